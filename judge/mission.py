@@ -123,8 +123,7 @@ class Volume(NamedTuple):
 @dataclass(frozen=True)
 class Mission:
     """The whole mission. lost, joins, added, removed: times by id [ms]; terrain_m: ground outside the sites;
-    lost_link_after_ms: silence of UxAS after which a vehicle that ICAROUS has is without the link; safe_state_after_ms:
-    time that it circles then until it is in the safe state."""
+    lost_link_after_ms: silence after which a vehicle is without the link; safe_state_after_ms: how long it circles then."""
 
     name: str
     latitude_deg: float

@@ -68,12 +68,13 @@ def hold(sender: Sender, state: State, vid: int, out: list[Out], why: str) -> St
     if craft.air is None or state.frame is None:
         return state, [*out, said]
     air, radius_m = craft.air, turn_radius_of(craft, craft.air)
-    sides = [_centre(air, radius_m, side) for side in (RIGHT, LEFT)]
-    kept = [_keeps(centre, radius_m, state.link.zones) for centre in sides]
-    side = 1 if kept == [False, True] else 0
-    projection = plane(state.frame)
-    lat_deg, long_deg = projection.to_geodetic(sides[side].north_m, sides[side].east_m)
-    turn = "CounterClockwise" if side else "Clockwise"
+    # a turn is flown on: rolling to the other side would carry it out of the circle
+    first = LEFT if craft.body is not None and craft.body.Roll < 0 else RIGHT
+    sides = [(side, _centre(air, radius_m, side)) for side in (first, -first)]
+    kept = [one for one in sides if _keeps(one[1], radius_m, state.link.zones)]
+    side, centre = (kept or sides)[0]
+    lat_deg, long_deg = plane(state.frame).to_geodetic(centre.north_m, centre.east_m)
+    turn = "Clockwise" if side == RIGHT else "CounterClockwise"
     action = circle_about(lat_deg, long_deg, air, radius_m, turn)
     state, sent = commanded(sender, state, vid, action)
     out = [*out, *by_uxas(sender, state, vid, sent.body), sent, said]

@@ -18,6 +18,8 @@ from cratous.spec.mission.guidance import Guidance
 from cratous.spec.mission.link_loss import LandingSite, WithoutLink
 from cratous.spec.mission.merging import Merging
 from cratous.spec.mission.on_failure import OnFailure
+from cratous.spec.mission.pattern import Pattern as Pattern
+from cratous.spec.mission.resolution import Resolution as Resolution
 from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.simulation import FaultySimulation as FaultySimulation
 from cratous.spec.mission.simulation import Simulation as Simulation
@@ -107,15 +109,6 @@ SEARCHES = (
 """The kinds served by camera coverage."""
 AREAS = (TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH)
 """The kinds for which an entire area has to be seen."""
-
-
-class Pattern(StrEnum):
-    """How a pattern search covers the surroundings of its centre."""
-
-    SPIRAL = "spiral"
-    SQUARE = "square"
-    SECTOR = "sector"
-    SWEEP = "sweep"
 
 
 @dataclass(frozen=True)
@@ -231,14 +224,6 @@ class GuidedWellClear(WellClear):
     """A volume for which the mission sets the persistence and hysteresis of alerts and bands."""
 
     guidance: Guidance = field(default_factory=Guidance)
-
-
-class Resolution(StrEnum):
-    """Kinds of resolution manoeuvres: heading: turns; altitude: climbs and descents; speed: slower or faster flight."""
-
-    HEADING = "heading"
-    ALTITUDE = "altitude"
-    SPEED = "speed"
 
 
 @dataclass(frozen=True)

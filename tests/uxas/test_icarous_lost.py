@@ -120,14 +120,24 @@ def test_the_hold_is_a_circle_that_its_bank_allows_and_that_begins_on_its_course
 
 
 @pytest.mark.parametrize(
-    ("east_m", "turn"),
-    [(188.0, "CounterClockwise"), (-188.0, "Clockwise"), (0.0, "Clockwise")],
+    ("east_m", "roll_deg", "turn"),
+    [
+        (188.0, 20.0, "CounterClockwise"),
+        (-188.0, -20.0, "Clockwise"),
+        (0.0, 0.0, "Clockwise"),
+        (0.0, -20.0, "CounterClockwise"),
+        (5000.0, -20.0, "CounterClockwise"),
+        (5000.0, 20.0, "Clockwise"),
+    ],
 )
-def test_the_circle_is_flown_on_the_side_that_keeps_the_zones(east_m: float, turn: str) -> None:
-    """On neither side: to the right, as without zones."""
+def test_the_circle_goes_on_with_the_turn_unless_only_the_other_keeps_the_zones(
+    east_m: float, roll_deg: float, turn: str
+) -> None:
     flight = Flight(IN_HAND)
     flight.say(tp.SetMode("ACTIVE", 1))
     flight.fly(500.0)
+    body = flight.state.craft(1).body.copy(Roll=roll_deg)
+    flight.do(flight.step.flown(flight.state, body, flight.now_ms))
     half_m = 20.0 if east_m else 5.0
     ring = tuple(
         (500.0 + a * half_m, east_m + b * half_m) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
