@@ -89,8 +89,10 @@ def test_one_that_icarous_has_holds_at_once_and_is_without_the_link_after_the_si
     flight = Flight(IN_HAND)
     flight.say(tp.SetMode("ACTIVE", 1))
     flight.fly(500.0)
-    flight.wait(4000)
-    assert len(flight.holds) == 1
+    flight.wait(3000)
+    assert flight.holds == [], "2 s, not more"
+    flight.wait(3500)
+    assert len(flight.holds) == 1, "within a heartbeat of 2 s"
     assert flight.modes == []
     flight.wait(31_000)
     assert flight.modes == []
