@@ -20,8 +20,8 @@ from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
 
 BLOCKED, ENDED, ICAROUS = "Blocked", "Ended", "ICAROUS"
 OF_HAND = ("Expiring", "Surprised")
-FINISH, SILENT_MS = "Finish", 30_000
-"""What a vehicle that ICAROUS has flies after that silence of UxAS [ms], before any failure."""
+FINISH = "Finish"
+"""What a vehicle that ICAROUS has flies after a silence of UxAS, before any failure."""
 RESERVE = 4
 """Heartbeats without a certificate after which that is declared."""
 
@@ -35,7 +35,7 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         subject, item = ("failed", str(vehicle)), f"what vehicle {vehicle} does after a failure"
         declared, said = log.declared.get(vehicle, []), log.alone.get(vehicle, [])
         place, track = down(mission, vehicle, flown.get(vehicle)), flown.get(vehicle)
-        faults = [*_declared(mission, asked, log, vehicle), *_flown(asked, declared, said)]
+        faults = [*_declared(mission, asked, log, vehicle), *_flown(mission, asked, declared, said)]
         faults += _kept(log, vehicle, declared)
         if log.end_ms is not None:
             faults += landing_faults(mission, flown, vehicle, said, log.end_ms)
@@ -95,14 +95,14 @@ def _without_ms(hands: list[tuple[int, str]]) -> int | None:
 
 
 def _flown(
-    asked: AfterFailure, declared: list[Declared], said: list[Alone]
+    mission: Mission, asked: AfterFailure, declared: list[Declared], said: list[Alone]
 ) -> Iterator[tuple[int, str]]:
     """Reports of what is flown that are impossible, or missing."""
     at_ms, mode = (declared[0].time_ms if declared else None), LINKED
     begun = False
     for one in said:
         if at_ms is None or one.time_ms < at_ms:
-            yield from _without_link(one, mode)
+            yield from _without_link(mission, one, mode)
             mode = one.mode
             continue
         # a failure begins what is flown anew
@@ -118,12 +118,12 @@ def _flown(
         yield at_ms, "nothing was flown from when the failure was declared"
 
 
-def _without_link(one: Alone, mode: str) -> Iterator[tuple[int, str]]:
+def _without_link(mission: Mission, one: Alone, mode: str) -> Iterator[tuple[int, str]]:
     """Faults of what is flown before any failure: the known way, then a circle, without the link."""
     silent_ms = one.time_ms - one.heard_ms
     if one.chosen != FINISH or one.mode not in follows(mode, FINISH):
         yield one.time_ms, f"{one.mode} is flown, and no failure had been declared"
-    elif one.mode != LINKED and silent_ms <= SILENT_MS:
+    elif one.mode != LINKED and silent_ms <= mission.lost_link_after_ms:
         yield one.time_ms, f"{one.mode} after a silence of {silent_ms} ms"
 
 

@@ -122,7 +122,8 @@ class Volume(NamedTuple):
 
 @dataclass(frozen=True)
 class Mission:
-    """The whole mission. lost, joins, added, removed: times by id [ms]; terrain_m: ground outside the sites."""
+    """The whole mission. lost, joins, added, removed: times by id [ms]; terrain_m: ground outside the sites;
+    lost_link_after_ms: silence after which a vehicle is without the link; safe_state_after_ms: how long it circles then."""
 
     name: str
     latitude_deg: float
@@ -146,6 +147,8 @@ class Mission:
     without_link: WithoutLink | None = None
     after_failure: AfterFailure | None = None
     fix: Fix | None = None
+    lost_link_after_ms: int = 30_000
+    safe_state_after_ms: int = 120_000
 
     @property
     def grounds(self) -> dict[int, float]:
@@ -232,6 +235,8 @@ def from_log(data: Node) -> Mission:
         without_link=without_link,
         after_failure=after_failure(data["daa"]["on_failure"]) if failing else None,
         fix=fix_of(data["daa"]["merging"]) if data["daa"].has("merging") else None,
+        lost_link_after_ms=positive(data.get("bridge", {}).get("lost_link_after_ms", 30_000)),
+        safe_state_after_ms=positive(data.get("bridge", {}).get("safe_state_after_ms", 120_000)),
     )
     check(mission, data)
     return mission

@@ -81,7 +81,8 @@ class _Reader:
                     said.append((name, change[name].whole, at))
         vehicles = [self.vehicle(v) for v in root["vehicles"]]
         guarded = [v.id for v in vehicles if v.protected]
-        count = root.get("bridge", {}).get("instances", len(guarded)).whole
+        bridge = root.get("bridge", {})
+        count = bridge.get("instances", len(guarded)).whole
         volume = root.get("daa", {}).get("well_clear", {})
         usual = {"dthr_m": 150.0, "zthr_m": 30.0, "tthr_s": 15.0, "tcoa_s": 0.0}
         simulation = root.get("simulation", {})
@@ -112,6 +113,8 @@ class _Reader:
             without_link=without_link,
             after_failure=after_failure(root["on_failure"]) if root.has("on_failure") else None,
             fix=self.fix(root["merging"]) if root.has("merging") else None,
+            lost_link_after_ms=_ms(bridge.get("lost_link_after_s", 30)),
+            safe_state_after_ms=_ms(bridge.get("safe_state_after_s", 120)),
         )
 
     def fix(self, data: Node) -> Fix:

@@ -1,8 +1,9 @@
-"""G5 of a flight that ended in the declared safe state: did each vehicle in it circle for the last two minutes?
+"""G5 of a flight that ended in the declared safe state: did each vehicle in it circle for as long as that takes?
 
-It is every vehicle that ICAROUS has at the end, on no ground and after no declared failure; if there is none, the end is
-not what it is said to be, for any vehicle. Positions are held against the least circle that could contain them: two that
-are farther apart than its diameter violate it, all within its radius of the middle of their extents hold.
+It is every vehicle that ICAROUS has at the end (where the mission sets what is flown without the link, also one that is
+said to circle), on no ground and after no declared failure; if there is none, the end is not what it is said to be, for
+any vehicle. Positions are held against the least circle that could contain them: two that are farther apart than its
+diameter violate it, all within its radius of the middle of their extents hold.
 """
 
 from __future__ import annotations
@@ -18,7 +19,6 @@ from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
 from cratous.judge.zones import Fence
 
 SAFE_STATE, ICAROUS, CIRCLES = "safe state", "ICAROUS", ("Loiter", "Over")
-LAST_MS = 120_000
 WIDER, MARGIN_M, GRAVITY_M_S2 = 1.1, 20.0, 9.80665
 """A circle is that much wider than the tightest turn at the speed flown; a vehicle may be that far outside [m]."""
 AXES = 8
@@ -33,13 +33,14 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
     away = [v for v in there if _away(mission, log, v, flown.get(v))]
     for vehicle in away or there:
         subject, item = ("circle", str(vehicle)), f"circle of vehicle {vehicle} at the end"
-        since, states = _since_ms(log, vehicle), _last(flown.get(vehicle), end_ms)
+        since = _since_ms(log, vehicle)
+        states = _last(mission, flown.get(vehicle), end_ms)
         reach_m = _reach_m(mission, vehicle, states)
         fault = ""
         if not away:
             fault = "the flight ended in the safe state, and ICAROUS had no vehicle"
-        elif since is None or end_ms - since < LAST_MS:
-            fault = f"it was not said to circle for {LAST_MS // 1000} s when the flight ended"
+        elif since is None or end_ms - since < mission.safe_state_after_ms:
+            fault = f"it was not said to circle for {mission.safe_state_after_ms / 1000:g} s when the flight ended"
         fault = fault or _apart(states, reach_m)
         fault = fault or _broken(mission, flown.get(vehicle), end_ms)
         if fault:
@@ -47,18 +48,20 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
             continue
         far_m = _radius_m(states)
         note = f"within {far_m:.1f} m of one place; a circle of {reach_m:.1f} m is allowed"
-        doubt = _doubt(flown.get(vehicle), end_ms)
+        doubt = _doubt(mission, flown.get(vehicle), end_ms)
         verdict = UNKNOWN if doubt or far_m > reach_m else HOLDS
         yield Row("G5", subject, item, verdict, doubt or note, None, len(states))
 
 
 def _away(mission: Mission, log: Log, vehicle: int, track: Track | None) -> bool:
-    """Whether ICAROUS had a vehicle at the end, in the air and without a declared failure."""
+    """Whether ICAROUS had a vehicle at the end, or it circled, in the air and without a declared failure."""
     owners = [one.side for one in log.gates if (one.vehicle, one.kind) == (vehicle, "state")]
     failed = mission.after_failure is not None and vehicle in log.declared
     place = down(mission, vehicle, track)
     rests = stands_at_start(mission, vehicle, track) or (place is not None and place.good)
-    return owners[-1:] == [ICAROUS] and not failed and not rests
+    asked = mission.without_link is not None and _since_ms(log, vehicle) is not None
+    alone = owners[-1:] == [ICAROUS] or asked
+    return alone and not failed and not rests
 
 
 def _since_ms(log: Log, vehicle: int) -> int | None:
@@ -72,16 +75,23 @@ def _since_ms(log: Log, vehicle: int) -> int | None:
     return since
 
 
-def _last(track: Track | None, end_ms: int) -> list[State]:
-    """The states in the last LAST_MS."""
-    return [] if track is None else track.states[track.from_index(end_ms - LAST_MS) :]
+def _last(mission: Mission, track: Track | None, end_ms: int) -> list[State]:
+    """The states in the time that counts."""
+    return (
+        []
+        if track is None
+        else track.states[track.from_index(end_ms - mission.safe_state_after_ms) :]
+    )
 
 
-def _doubt(track: Track | None, end_ms: int) -> str:
+def _doubt(mission: Mission, track: Track | None, end_ms: int) -> str:
     """Why the path in that time is not known; empty if it is."""
     if track is None:
         return "no position of it was logged"
-    return next((flaw.why for flaw in track.flaws if flaw.last_ms > end_ms - LAST_MS), "")
+    return next(
+        (flaw.why for flaw in track.flaws if flaw.last_ms > end_ms - mission.safe_state_after_ms),
+        "",
+    )
 
 
 def _reach_m(mission: Mission, vehicle: int, states: list[State]) -> float:
@@ -119,7 +129,7 @@ def _broken(mission: Mission, track: Track | None, end_ms: int) -> str:
     if track is None:
         return ""
     for zone in mission.zones:
-        fence, first = Fence(zone), max(zone.from_ms, end_ms - LAST_MS)
+        fence, first = Fence(zone), max(zone.from_ms, end_ms - mission.safe_state_after_ms)
         if track.from_index(first) >= len(track.states) - (zone.from_ms > 0):
             continue
         for before, after in track.legs(track.from_index(first)):

@@ -196,6 +196,7 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
     from cratous.services.certify.report import mission_hash
     from cratous.services.flight.dynamics import limits_of
     from cratous.services.icarous.state import Config
+    from cratous.services.icarous_communication.unheard import CHOICES
     from cratous.services.icarous_program.step import Craft
     from cratous.services.loading import load
     from cratous.services.mission.frames import Projection
@@ -213,12 +214,12 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
             expected=digest[:80],
             got=mission_hash(mission),
         )
-    if mission.link_loss is not None:
+    if mission.link_loss is not None and mission.link_loss.choice.value not in CHOICES:
         raise BadInput(
-            "the mission says what is flown without the link, which a program of its own does not fly",
+            "without the link UxAS's end of the bridge flies no landing",
             where=str(path),
-            item="link_loss",
-            expected="no link_loss, or cratous run without --processes",
+            item="link_loss.choice",
+            expected=f"{' or '.join(CHOICES)}, or cratous run without --processes",
             got=mission.link_loss.choice.value,
         )
     if (after := on_failure_of(mission)) is not None:

@@ -72,8 +72,6 @@ BELIEVED_MS = 10_000
 """A vehicle that has reported for this long that ICAROUS has it is suspended, though ICAROUS did not say so [ms]."""
 SAFE_STATE = "safe state"
 """Outcome of a flight that ends with every vehicle that UxAS does not have in the declared safe state."""
-SAFE_STATE_MS = 120_000
-"""How long a vehicle circles without the link before the flight ends, if no other has anything left to fly [ms]."""
 BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)
 """Kinds of change for which the end of the mission waits."""
 MAY_FREE_WORK = (WIND, ZONE_ENDS)
@@ -260,7 +258,7 @@ class Executive:
             if chain.item is None and stands_at_start(chain.vehicle, state.air(chain.vehicle.id))
         }
         gates = [(vid, gate) for vid, gate in message.gates if vid not in stays]
-        busy = failing.busy(state)
+        busy, safe_ms = failing.busy(state), self.config.mission.bridge_times.safe_state_after_ms
         away = [v for v, gate in gates if v in busy or (gate.owner != UXAS and v not in down)]
         kinds = (*BRINGS_WORK, *(MAY_FREE_WORK if state.left_out else ()))
         expected = sum(c.kind in kinds for c in state.to_come)
@@ -270,7 +268,7 @@ class Executive:
         if how == OUTCOMES[FAILED_FLIGHT]:
             stopping, state = state.stopping, failing.at_the_end(self.config, state)
             how = how if state.stopping == stopping else ""
-        safe = [v for v in away if v in since and lasted(since[v], now_ms, SAFE_STATE_MS)]
+        safe = [v for v in away if v in since and lasted(since[v], now_ms, safe_ms)]
         working = sum(c.item is not None for c in state.chains if c.vehicle.id not in safe)
         if not how and ends_in_safe_state(working, len(away), len(safe), expected):
             how = SAFE_STATE

@@ -97,7 +97,7 @@ from cratous.services.mission.landing import sites_of
 from cratous.services.sensing import surveillance
 from cratous.services.sensing.filter import Flown
 from cratous.services.sensing.surveillance import Surveillance
-from cratous.spec.mission import Change, FaultySimulation, LivePlanningMission, Mission
+from cratous.spec.mission import Change, FaultySimulation, Mission
 from cratous.spec.mission.plan import Plan
 from cratous.spec.records import replace
 
@@ -153,7 +153,7 @@ class Flight:
         dt_s, sites = simulation.step_ms / 1000, sites_of(mission)
         self.executive = Executive(Config(mission, projection, instances))
         self.executive_state = executive_state.first_state(mission, plan)
-        live = isinstance(mission, LivePlanningMission)
+        live = mission.live_planning
         alone = mission.link_loss is not None
         self.link, self.link_state = (
             UxasEnd(projection, live, alone),

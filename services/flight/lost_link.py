@@ -16,10 +16,6 @@ from cratous.spec.mission.link_loss import WithoutLink, words
 from cratous.spec.mission.on_failure import AfterFailure, Failed
 from cratous.spec.mission.plan import Pose
 
-IN_HAND_AFTER_MS = 30_000
-"""Silence of UxAS after which a vehicle in ICAROUS's hand finishes its way and circles, if the mission sets nothing
-[ms].
-"""
 CHOICES = {
     WithoutLink.FINISH: FINISH,
     WithoutLink.LOITER: LOITER,
@@ -49,7 +45,7 @@ def lost_link(mission: Mission, vehicle_id: int) -> LostLink | None:
         if mission.sensing is not None or merging_of(mission) is not None:
             return None
         said = words(WithoutLink.FINISH, "")
-        return LostLink(FINISH, IN_HAND_AFTER_MS, said, _way, in_hand=True)
+        return LostLink(FINISH, mission.bridge_times.lost_link_after_ms, said, _way, in_hand=True)
     goal = loss.to or mission.vehicle(vehicle_id).position
     returns = loss.choice is WithoutLink.RETURN
     choice = CHOICES[loss.choice]

@@ -62,14 +62,13 @@ from cratous.services.following.speeds import Limits, limits_of, wind_of
 from cratous.services.following.stations import EARLY, FLY, LATE
 from cratous.services.following.vehicle_part import Part
 from cratous.services.pipeline.contexts import Context
+from cratous.services.pipeline.off_plan import HANDED_BACK, WITH_UXAS
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import (
     ACTIVE,
-    HANDED_BACK,
     LISTED,
     PUBLISH_OPTIONS,
     UNLISTED,
-    WITH_UXAS,
     WITHDRAWN,
     State,
 )

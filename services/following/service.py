@@ -33,16 +33,15 @@ from cratous.services.following.task_parameters import (
 )
 from cratous.services.following.vehicle_part import Part
 from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
+from cratous.services.pipeline.off_plan import HANDED_BACK, WITH_UXAS
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import (
     ACTIVE,
     CHOSEN,
-    HANDED_BACK,
     LISTED,
     PUBLISH_OPTIONS,
     REMOVE,
     UNLISTED,
-    WITH_UXAS,
     WITHDRAWN,
     State,
     TaskService,

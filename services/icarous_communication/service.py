@@ -111,7 +111,7 @@ class IcarousCommunicationService:
                 for door in self._doors
             ]
         )
-        self._step = Communication(name, settings.deviation_m, settings.dialects)
+        self._step = Communication(name, settings.deviation_m, settings.dialects, settings.lost)
         self._seats = Seats(settings.instances, settings.ids)
         self._routes, self._proposals = routes, proposals
         self._early: dict[int, list[Message]] = {}

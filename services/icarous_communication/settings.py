@@ -10,7 +10,15 @@ from typing import Any, NamedTuple
 from cratous.bridge.port import Address, address
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.keys import Keys, keys_of
+from cratous.core.authority.link_loss import FINISH, RETURN
 from cratous.services.icarous_communication.listeners import FORMS, Dialects, Door, form_of
+from cratous.services.icarous_communication.returning import Place
+from cratous.services.icarous_communication.unheard import (
+    AFTER_MS,
+    CHOICES,
+    IN_HAND,
+    LostLink,
+)
 from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.spec.errors import BadInput
 
@@ -31,6 +39,9 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "PlainBeyondLoopback": flag(False),
     "RouteTimeout_s": number(2.0, 0.1, 600.0),
     "UseUxasRoutePlanner": flag(False),
+    "LostLink": choice("", "", *CHOICES),
+    "LostLinkAfter_s": number(AFTER_MS / 1000, 1.0, 3600.0),
+    "LostLinkTo": Attr(),
 }
 DEVIATION_M = 500.0
 """Deviation from its leg at which a vehicle's tasks are paused during avoidance [m]."""
@@ -47,7 +58,8 @@ class Settings(NamedTuple):
     to connect to instead, one per instance; keys: of the vehicles, set for v2; ids: vehicles, () for the
     lowest known; wait_s: for the instances [s]; dialect: of the peers, also of the lines inside v2's
     packets; planner: RoutePlannerUsed, -1 for UxAS's own; answer_s: limit for a route [s]; live: ICAROUS
-    may request a way back from UxAS during a takeover; others: addresses for other dialects.
+    may request a way back from UxAS during a takeover; others: addresses for other dialects; lost: what is
+    flown while an instance is not heard.
     """
 
     instances: int
@@ -62,6 +74,7 @@ class Settings(NamedTuple):
     answer_s: float = 2.0
     live: bool = False
     others: tuple[Door, ...] = ()
+    lost: LostLink = IN_HAND
 
     @property
     def doors(self) -> tuple[Door, ...]:
@@ -112,8 +125,9 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
         )
         raise entry.refusal("peers that cannot ask UxAS", item, expected, dialect.value)
     routes = v["RoutePlannerUsed"], v["RouteTimeout_s"], live
+    lost = _lost_link(entry, v)
     return Settings(
-        count, deviation_m, where, ids, v["Timeout_s"], dialect, to, keys, *routes, others
+        count, deviation_m, where, ids, v["Timeout_s"], dialect, to, keys, *routes, others, lost
     )
 
 
@@ -178,6 +192,21 @@ def _keys(
         item, expected = "Dialect", 'v2, an address of loopback, or PlainBeyondLoopback="true"'
     got = f'Dialect="{v["Dialect"]}" VehicleIDs="{v["VehicleIDs"]}" Keys="{v["Keys"]}"'
     raise entry.refusal("no authentication", item, expected, got)
+
+
+def _lost_link(entry: Entry, v: Mapping[str, Any]) -> LostLink:
+    """What is flown while an instance is not heard."""
+    asked, to = CHOICES.get(v["LostLink"]), None
+    if text := v["LostLinkTo"]:
+        try:
+            to = Place(*map(float, text.split()))
+        except (TypeError, ValueError):
+            to = None
+        if asked != RETURN or to is None or not to.is_on_earth:
+            expected = 'LATITUDE LONGITUDE ALTITUDE [deg, deg, m MSL], with LostLink="return"'
+            raise entry.refusal("no place to return to", "LostLinkTo", expected, text[:80])
+    after_ms = round(1000 * v["LostLinkAfter_s"])
+    return LostLink(FINISH if asked is None else asked, after_ms, asked is None, to)
 
 
 def _to(entry: Entry, text: str, count: int) -> tuple[Address, ...]:

@@ -22,6 +22,7 @@ from cratous.bridge.text_protocol import (
     Waypoint,
 )
 from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS
+from cratous.core.authority.link_loss import LINKED, Loss
 from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
@@ -50,6 +51,7 @@ DEFAULT_BANK_RAD = math.radians(30.0)
 """Bank limit used, and the one assumed without a configured value [rad]."""
 
 
+NO_LOSS = Loss(LINKED, 0)
 MISSION_OVER = StopMission(), ForgetWaypoints()
 """Lines sent to an instance when its vehicle's mission is over."""
 
@@ -76,8 +78,10 @@ class Craft:
     """What is known of one vehicle.
 
     configuration: AirVehicleConfiguration; body, air: newest AirVehicleState and its motion in the plane;
-    plan: in force; away: set while ICAROUS has it; holds: commanded to hold because its ICAROUS is not heard;
-    handed: just handed back, so late steering of ICAROUS is expected; waiting: mission received meanwhile.
+    plan: in force; away: set while it does not fly it; holds: commanded to hold because its ICAROUS is not
+    heard; handed: just handed back, so late steering of ICAROUS is expected; waiting: mission received
+    meanwhile; loss: its lost-link procedure; first: where it was first seen; returns: MissionCommand on which
+    it returns without the link.
     """
 
     configuration: Any = None
@@ -88,6 +92,9 @@ class Craft:
     holds: bool = False
     handed: bool = False
     waiting: Any = None
+    loss: Loss = NO_LOSS
+    first: Position | None = None
+    returns: Any = None
 
     @property
     def listed(self) -> tuple[int, ...]:

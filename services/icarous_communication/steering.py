@@ -1,4 +1,4 @@
-"""ICAROUS's steering as commands for the autopilot: SETVEL, SETPOS, GOTOWP; and the hold when it is lost."""
+"""ICAROUS's steering as commands for the autopilot: SETVEL, SETPOS, GOTOWP; and circles."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def action_of(line: Message, air: AirState, plan: Plan | None, projection: Proje
         case SetVelocity(north, east, down):
             altitude = air.position.alt_m - down * AHEAD_S
             if not (north or east):
-                return hold(air, projection, altitude)
+                return _stay(air, projection, altitude)
             return lmcp.new(
                 "FlightDirectorAction",
                 Speed=math.hypot(north, east),
@@ -67,11 +67,17 @@ def action_of(line: Message, air: AirState, plan: Plan | None, projection: Proje
     return None
 
 
-def hold(air: AirState, projection: Projection, altitude_m: float | None = None) -> Any:
-    """Loiter at the aircraft's position, at its altitude or another one [m MSL]."""
+def _stay(air: AirState, projection: Projection, altitude_m: float) -> Any:
+    """Loiter at the aircraft's position, at an altitude [m MSL]."""
     place = air.position
     lat, long = projection.to_geodetic(place.north_m, place.east_m)
-    return _loiter(lat, long, place.alt_m if altitude_m is None else altitude_m, air)
+    return _loiter(lat, long, altitude_m, air)
+
+
+def circle_about(lat_deg: float, long_deg: float, air: AirState, radius_m: float, turn: str) -> Any:
+    """A circle at the aircraft's altitude and speed. turn: Clockwise or CounterClockwise."""
+    loiter = _loiter(lat_deg, long_deg, air.position.alt_m, air)
+    return loiter.copy(Radius=radius_m, Direction=turn)
 
 
 def command_of(vehicle_id: int, command_id: int, action: Any) -> Any:

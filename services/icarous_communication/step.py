@@ -11,7 +11,6 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-from cratous.bridge import lmcp
 from cratous.bridge.text_protocol import GoToWaypoint, Heartbeat, Hello, Message, SetMode
 from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts, gate_after
 from cratous.core.authority.timeliness import lasted
@@ -35,7 +34,18 @@ from cratous.services.flight.messages import (
     Watch,
     ZonesKnown,
 )
-from cratous.services.icarous_communication import modes
+from cratous.services.icarous_communication import modes, returning, unheard
+from cratous.services.icarous_communication.holding import (
+    Sender,
+    about_tasks,
+    by_uxas,
+    commanded,
+    held,
+    hold,
+    icarous_has,
+    missions_at_gate,
+    taken_over,
+)
 from cratous.services.icarous_communication.listeners import Dialects
 from cratous.services.icarous_communication.plans import (
     Away,
@@ -77,17 +87,15 @@ from cratous.services.icarous_communication.state import (
 from cratous.services.icarous_communication.steering import (
     action_of,
     at_gate,
-    command_of,
     flies,
-    hold,
     in_flight,
     taken_back,
     told,
 )
-from cratous.services.pipeline.status import status
+from cratous.services.icarous_communication.unheard import IN_HAND, LostLink
 from cratous.services.uxas.daidalus.zones import frame_at
+from cratous.spec.authority.link_loss import REJOIN
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Position
 
 Step = tuple[State, list[Out]]
 
@@ -95,11 +103,17 @@ Step = tuple[State, list[Out]]
 @dataclass(frozen=True)
 class Communication:
     """The step and its fixed configuration. allowed_m: deviation from its leg at which a vehicle's tasks pause [m];
-    dialects: of the peers; other dialects than ours have no heartbeat."""
+    dialects: of the peers; other dialects than ours have no heartbeat; procedure: what is flown without ICAROUS."""
 
     name: str
     allowed_m: float
     dialects: Dialects
+    procedure: LostLink = IN_HAND
+
+    @property
+    def sender(self) -> Sender:
+        """Sender of commands."""
+        return Sender(self.name, self.dialects)
 
     # what comes over the wire ---------------------------------------------------------------------
 
@@ -127,10 +141,14 @@ class Communication:
     def lost(self, state: State, message: Lost) -> Step:
         """An instance's connection has closed."""
         state, out = self._end(state, message)
-        return self._held(state, message.vehicle_id, out)
+        return held(self.sender, state, message.vehicle_id, out)
 
     def heard(self, state: State, vehicle_id: int, line: Message, now_ms: int) -> Step:
-        """Process a line from an instance."""
+        """Process a line from an instance; what was flown without it ends."""
+        state, out = self._line(state, vehicle_id, line, now_ms)
+        return self._alone(state, vehicle_id, now_ms, out)
+
+    def _line(self, state: State, vehicle_id: int, line: Message, now_ms: int) -> Step:
         if isinstance(line, SetMode):
             return self._mode(state, vehicle_id, line, now_ms)
         flown = flies(line, state.craft(vehicle_id).air, state.plane)
@@ -154,7 +172,9 @@ class Communication:
                 return state, out
             detail = f"vehicle {vehicle_id}: {type(line).__name__} in epoch {peer.gate.epoch}"
             return state, [*out, Refuse("steering by one without authority", detail)]
-        state, command = self._command(goes_on(state, vehicle_id, line), vehicle_id, action)
+        state, command = commanded(
+            self.sender, goes_on(state, vehicle_id, line), vehicle_id, action
+        )
         come = at_gate(self.name, vehicle_id, peer.gate, ICAROUS, command.body)
         return state, [*out, come, command]
 
@@ -163,7 +183,8 @@ class Communication:
         peers = [one.vehicle_id for one in state.link.peers]
         state, out = self._end(state, Watch(now_ms, frozenset(filter(self.dialects.ours, peers))))
         for vid in peers:
-            state, out = self._held(state, vid, out)
+            state, out = held(self.sender, state, vid, out)
+            state, out = self._alone(state, vid, now_ms, out)
         return state, out
 
     def _mode(self, state: State, vehicle_id: int, line: SetMode, now_ms: int) -> Step:
@@ -195,12 +216,14 @@ class Communication:
         vid, craft = int(command.VehicleID), state.craft(command.VehicleID)
         if not command.WaypointList:
             return ended(state, vid, self.dialects.of(vid))
+        if returning.is_part(command, craft):
+            return state, by_uxas(self.sender, state, vid, command)
         if craft.away is not None:
             text = f"vehicle {vid}: a mission has come while ICAROUS has it, and waits for the handback"
-            come = self._by_uxas(state, vid, command)
+            come = by_uxas(self.sender, state, vid, command)
             return state.put(vid, replace(craft, waiting=command)), [Note("WARN", text), *come]
         state, out = self._in_force(state, vid, command, now_ms)
-        return state, [*self._by_uxas(state, vid, command), *out]
+        return state, [*by_uxas(self.sender, state, vid, command), *out]
 
     def _in_force(self, state: State, vid: int, command: Any, now_ms: int) -> Step:
         """Put a MissionCommand into force."""
@@ -230,7 +253,8 @@ class Communication:
         state, out = self._framed(state, body.Location)
         assert state.frame is not None
         air = air_state(body, plane(state.frame))
-        craft = replace(state.craft(vid), body=body, air=air, handed=False)
+        craft = state.craft(vid)
+        craft = replace(craft, body=body, air=air, handed=False, first=craft.first or air.position)
         if craft.plan is not None and craft.away is None:
             settled = lasted(craft.plan.since_ms, now_ms, SETTLES_MS)
             craft = replace(craft, plan=shown(craft.plan, body.CurrentWaypoint, settled))
@@ -280,7 +304,7 @@ class Communication:
         state = state.put(vid, replace(craft, away=away._replace(paused=True)))
         point = None if self.dialects.original(vid) else resume_point(plan, away.left)
         state, out = self._end(state, Left(vid, point)) if point else (state, [])
-        paused = [Say(lmcp.new("TaskPause", TaskID=task), self.name) for task in away.tasks]
+        paused = about_tasks(self.sender, "TaskPause", away.tasks)
         text = f"vehicle {vid} is more than {self.allowed_m:g} m from its leg; tasks pause"
         return state, [*out, *paused, Note("INFO", f"{text}: {list(away.tasks)}")]
 
@@ -293,7 +317,7 @@ class Communication:
         for answer in answers:
             match answer:
                 case Suspend(vid, now_ms, _):
-                    state, more = self._suspend(state, vid, now_ms)
+                    state, more = taken_over(self.sender, state, vid, now_ms)
                     out += more
                 case TakeBack(vid, now_ms, _, epoch):
                     state, more = self._take_back(state, vid, epoch, now_ms)
@@ -303,16 +327,6 @@ class Communication:
                 case Say():
                     out.append(answer)
         return state, out
-
-    def _suspend(self, state: State, vid: int, now_ms: int) -> Step:
-        craft, peer = state.craft(vid), state.link.peer(vid)
-        assert peer is not None
-        tasks = being_done(craft.plan, craft.listed)  # tasks not yet reached need no pause
-        left = Position(0.0, 0.0, 0.0) if craft.air is None else craft.air.position
-        # a reconnected instance has had the vehicle all the time
-        state = state.put(vid, replace(craft, away=craft.away or Away(left, tasks)))
-        text = f"vehicle {vid}: ICAROUS has it, in epoch {peer.gate.epoch}"
-        return state, [Note("WARN", text), *told(self.name, vid, now_ms, peer.gate)]
 
     def _take_back(self, state: State, vid: int, epoch: int, now_ms: int) -> Step:
         """UxAS takes back: tasks and mission resume, ICAROUS is sent the route; without a mission it holds."""
@@ -325,27 +339,28 @@ class Communication:
         out += taken_back(self.name, vid, now_ms, peer.gate, onward)
         out += told(self.name, vid, now_ms, gate)
         if away is not None and away.paused:
-            out += [Say(lmcp.new("TaskResume", TaskID=task), self.name) for task in away.tasks]
+            out += about_tasks(self.sender, "TaskResume", away.tasks)
         return state, [*out, *onward]
 
     def _onward(self, state: State, vid: int, now_ms: int) -> Step:
         """What a vehicle is sent after a handback."""
         craft = state.craft(vid)
         away, plan, air = craft.away, craft.plan, craft.air
-        state = state.put(vid, replace(craft, away=None, holds=False, handed=True, waiting=None))
+        state = state.put(
+            vid, replace(craft, away=None, holds=False, handed=True, waiting=None, returns=None)
+        )
         if craft.waiting is not None:
             state = state.put(vid, replace(state.craft(vid), plan=None))
             state, out = self._in_force(state, vid, craft.waiting, now_ms)
             return state, [Say(craft.waiting, self.name), *out]
         if plan is None or away is None or air is None or state.frame is None:
-            return self._hold(state, vid, [], "handed back without a mission")
+            return hold(self.sender, state, vid, [], "handed back without a mission")
         now = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
         plan, radius_m = going_on(plan, away), turn_radius_of(craft, air)
         sent = resumed(plan, away, now, radius_m, state.plane, COMMANDS_FROM + state.commands + 1)
-        way = leading_back(
-            plan, away, sent, plan_of(sent.command, state.plane, now_ms, air.position)
-        )
-        after = replace(craft, away=None, holds=False, handed=True, plan=way)
+        flown = plan_of(sent.command, state.plane, now_ms, air.position)
+        way = leading_back(plan, away, sent, flown)
+        after = replace(craft, away=None, holds=False, handed=True, plan=way, returns=None)
         state = replace(state.put(vid, after), commands=state.commands + 1)
         state, out = self._route(state, vid)
         return state, [Say(sent.command, self.name), *out]
@@ -357,32 +372,17 @@ class Communication:
         points = part(plan, self.dialects.of(vid).part_waypoints)
         return self._end(state, Route(vid, points, plan.speed_m_s, plan.track.s_m[plan.told]))
 
-    def _held(self, state: State, vid: int, out: list[Out]) -> Step:
-        """Let a vehicle hold where it is while ICAROUS has it but is not heard."""
-        peer, craft = state.link.peer(vid), state.craft(vid)
-        if peer is None or peer.end.alive or craft.away is None or craft.holds:
-            return state, out
-        return self._hold(state, vid, out, "its ICAROUS, which has it, is not heard")
-
-    def _hold(self, state: State, vid: int, out: list[Out], why: str) -> Step:
-        craft = state.craft(vid)
-        said = Say(status(0, "Error", [("reason", f"vehicle {vid} holds: {why}")]), self.name)
-        if craft.air is None or state.frame is None:
-            return state, [*out, said]
-        state, told_to = self._command(state, vid, hold(craft.air, state.plane))
-        out = [*out, *self._by_uxas(state, vid, told_to.body), told_to, said]
-        return state.put(vid, replace(craft, holds=True)), out
-
-    def _by_uxas(self, state: State, vid: int, command: Any) -> list[Out]:
-        """UxAS's command at the gate of a vehicle, if the vehicle has one here."""
-        peer, fresh = state.link.peer(vid), self.dialects.ours(vid) and vid in state.fresh
-        if peer is None or modes.unknown(peer, fresh):
-            return []
-        return [at_gate(self.name, vid, peer.gate, UXAS, command)]
-
-    def _command(self, state: State, vid: int, action: Any) -> tuple[State, Say]:
-        state = replace(state, commands=state.commands + 1)
-        return state, Say(command_of(vid, COMMANDS_FROM + state.commands, action), self.name)
+    def _alone(self, state: State, vid: int, now_ms: int, out: list[Out]) -> Step:
+        """Carry out what a vehicle flies while its ICAROUS is not heard."""
+        who = self.name, self.procedure
+        state, beat = unheard.heartbeat(*who, state, vid, now_ms, self.dialects.ours(vid))
+        craft, out = state.craft(vid), [*out, *beat.said]
+        if beat.step.act != REJOIN or craft.away is None or icarous_has(state, vid):
+            state, more = unheard.flown(self.sender, state, vid, beat)
+            return state, [*out, *more]
+        state, onward = self._onward(state, vid, now_ms)
+        out += missions_at_gate(self.sender, state, vid, onward)
+        return state, [*out, *about_tasks(self.sender, "TaskResume", craft.away.tasks), *onward]
 
     def _framed(self, state: State, place: Any) -> Step:
         """The first position received defines the plane; zones received before are then converted."""

@@ -7,7 +7,9 @@ faults, at most ten, each with file, line and item.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -30,6 +32,7 @@ from cratous.services.loading.schema import schema_problems
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.take_off import on_their_ground, take_off_problems
 from cratous.services.loading.take_off import words as take_off_words
+from cratous.services.loading.yaml_bridge import yaml_bridge_times
 from cratous.services.loading.yaml_bridge_faults import yaml_bridge_faults
 from cratous.services.loading.yaml_guidance import guidance_problems, guided
 from cratous.services.loading.yaml_link_loss import place_problems, yaml_link_loss
@@ -61,6 +64,7 @@ from cratous.spec.mission import (
     Resolution,
     SensedDaa,
     Simulation,
+    TimedBridgeMission,
     Traffic,
     Vehicle,
     Velocity,
@@ -70,6 +74,8 @@ from cratous.spec.mission import (
     changes,
 )
 from cratous.spec.mission.bridge_faults import words
+from cratous.spec.mission.bridge_times import USUAL
+from cratous.spec.mission.bridge_times import words as bridge_words
 from cratous.spec.mission.changes import (
     VEHICLE_HOLDS,
     WIND,
@@ -129,7 +135,7 @@ def finish(mission: Mission, where: Any) -> Mission:
     refuse(mission_problems(replace(mission, zones=(*mission.zones, *later)), where))
     refuse([*change_problems(mission, where), *zone_end_problems(mission, where)])
     refuse(list(guidance_problems(mission, where)))
-    notes: list[str] = []
+    notes = [] if mission.bridge_times == USUAL else [bridge_words(mission.bridge_times)]
     problems: list[BadInput] = []
 
     def hard(zone: Zone, item: str) -> Zone:
@@ -194,7 +200,10 @@ def _mission(document: Document, seed: int) -> Mission:
     link_loss = yaml_link_loss(document, places, simulation, len(instances))
     on_failure = yaml_on_failure(document, places, len(instances))
     merging = yaml_merging(document, places)
-    kind = LivePlanningMission if live else Mission
+    times = yaml_bridge_times(document, simulation)
+    kind: Callable[..., Mission] = LivePlanningMission if live else Mission
+    if times != USUAL:
+        kind = partial(TimedBridgeMission, uxas_route_planner=live, bridge=times)
     return kind(
         name=data["name"],
         source=document.path,

@@ -42,8 +42,6 @@ RESERVE_BEATS = 4
 """Number of heartbeats that a certificate must cover; a test compares it with the instance's value."""
 BOUND_MS = 2**40
 """No silence counts: only a declared failure does [ms]."""
-SILENT_MS = 30_000
-"""Silence of UxAS after which a vehicle in ICAROUS's hand acts by itself; a test compares it with the instance's."""
 BLOCKED_NOTE = "blocked: "
 NO_FAILURE = Failure(NONE, 0)
 UNTOUCHED = Gate(UXAS, 0, False)
@@ -69,6 +67,7 @@ class FailureWatch(LinkLossWatch):
         """down: vehicles on the ground, by their positions; presence: observation spans of each aircraft."""
         super().__init__(mission, down, presence)
         self._after = on_failure_of(mission)
+        self._silent_ms = mission.bridge_times.lost_link_after_ms
         self._merges_or_senses = mission.sensing is not None or merging_of(mission) is not None
         there = mission.instances if self._after is not None else ()
         self._seen = {number: Told() for number in there}
@@ -149,7 +148,7 @@ class FailureWatch(LinkLossWatch):
         """Process what is flown without the link before any failure: the known way, then a circle, in ICAROUS's hand."""
         now_ms, mode = body.Time, int(body.Mode)
         may = {
-            loss_step(told.loss, FINISH, heard_ms, now_ms, SILENT_MS, way, end).loss.mode
+            loss_step(told.loss, FINISH, heard_ms, now_ms, self._silent_ms, way, end).loss.mode
             for way, end in product(EITHER, EITHER)
             # whether the vehicle was out of ICAROUS's hand meanwhile, which counts as heard, is seen by its gate
             for heard_ms in ((body.Heard,) if _flies(told) else (body.Heard, now_ms))

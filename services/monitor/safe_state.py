@@ -1,9 +1,10 @@
 """G5 of a flight that ended in the declared safe state: that each vehicle circled as it is said to.
 
-A vehicle that ICAROUS has at the end, and that is neither on the ground nor after a declared failure, has to have been
-said to circle (`LinkLossState`) for the last STAYS_MS. Its positions in that time have to lie in a circle of the turn
-radius at the speed that it flew, at most its greatest, and its legs have to keep the zones. Positions that fit in none
-violate it; where neither is shown, or it was not observed throughout, it is unknown.
+A vehicle that ICAROUS has at the end (with `link_loss`, also one that is said to circle), and that is neither on the
+ground nor after a declared failure, has to have been said to circle (`LinkLossState`) for the last `safe_state_after_ms` of the mission. Its
+positions in that time have to lie in a circle of the turn radius at the speed that it flew, at most its greatest, and
+its legs have to keep the zones. Positions that fit in none violate it; where neither is shown, or it was not observed
+throughout, it is unknown.
 """
 
 from __future__ import annotations
@@ -35,8 +36,6 @@ from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 SAFE_STATE = "safe state"
 """The outcome of a flight that is judged here; a test compares it with the executive's."""
-STAYS_MS = 120_000
-"""How long a vehicle has to have circled before such an end [ms]; likewise."""
 WIDER = 1.1
 """A circle is flown this much wider than the tightest turn."""
 MARGIN_M = 20.0
@@ -50,7 +49,7 @@ KERNELS = tuple(qualified(kernel) for kernel in DECIDE)
 @dataclass
 class Seen:
     """State of one vehicle. icarous: whether ICAROUS has it; circles_ms: since when it is said to circle [ms], None if it
-    is not; failed: it has declared a failure; flown: its samples in the last STAYS_MS.
+    is not; failed: it has declared a failure; flown: its samples in that time.
     """
 
     icarous: bool = False
@@ -65,6 +64,7 @@ class SafeStateWatch:
     def __init__(self, mission: Mission, presence: Presence) -> None:
         self._mission, self._presence = mission, presence
         self._seen = {number: Seen() for number in sorted(mission.instances)}
+        self._stays_ms = mission.bridge_times.safe_state_after_ms
         self._end_ms: int | None = None
         self._down: Mapping[int, Down] = {}
 
@@ -94,7 +94,7 @@ class SafeStateWatch:
             if not flown and number in before:
                 flown.append(before[number])
             flown.append(after[number])
-            while not in_time(flown[0].time_ms, flown[-1].time_ms, STAYS_MS):
+            while not in_time(flown[0].time_ms, flown[-1].time_ms, self._stays_ms):
                 flown.popleft()
 
     def end(self, body: Any, down: Mapping[int, Down]) -> None:
@@ -107,24 +107,33 @@ class SafeStateWatch:
         if self._end_ms is None:
             return []
         rest = {number for number, down in self._down.items() if down.good or down.began}
-        away = {n: s for n, s in self._seen.items() if s.icarous and not s.failed and n not in rest}
+        # where the mission asks for it, one that UxAS has may circle too
+        asked = self._mission.link_loss is not None
+        seen = self._seen.items()
+        there = ((n, s) for n, s in seen if s.icarous or (asked and s.circles_ms is not None))
+        away = {n: s for n, s in there if not s.failed and n not in rest}
         nobody = "" if away else "the flight ended in the safe state, and ICAROUS had no vehicle"
         those = away or self._seen
         return [self._verdict(n, s, self._end_ms, nobody) for n, s in those.items()]
 
     def _verdict(self, number: int, seen: Seen, end_ms: int, nobody: str) -> Verdict:
-        flown = [s for s in seen.flown if lasted(end_ms - STAYS_MS, s.time_ms, 0)]
+        flown = [s for s in seen.flown if lasted(end_ms - self._stays_ms, s.time_ms, 0)]
         reach_m = _reach_m(self._mission.vehicle(number), flown)
-        text = nobody or _not_said(seen, end_ms) or self._fault(flown, reach_m)
+        text = nobody or _not_said(seen, end_ms, self._stays_ms) or self._fault(flown, reach_m)
         since_ms, outcome, margin = seen.circles_ms, Outcome.VIOLATED, None
         if not text:
-            doubt = self._presence.unseen(number, (end_ms - STAYS_MS, end_ms), Ending(end_ms, True))
+            doubt = self._presence.unseen(
+                number, (end_ms - self._stays_ms, end_ms), Ending(end_ms, True)
+            )
             far_m = _farthest_m(flown)
             middle = _middle(flown)
             inside = all(comes_near(s, s, middle, reach_m) for s in flown)
             outcome = Outcome.HOLDS if inside and not doubt else Outcome.UNKNOWN
             margin = reach_m - far_m if outcome is Outcome.HOLDS else None
-            text = doubt or f"in the last {STAYS_MS / 1000:g} s within {far_m:.1f} m of one place"
+            text = (
+                doubt
+                or f"in the last {self._stays_ms / 1000:g} s within {far_m:.1f} m of one place"
+            )
             text += f"; a circle of {reach_m:.1f} m is allowed"
         note = text if since_ms is None else f"{text}; said to circle from {since_ms / 1000:.2f} s"
         return Verdict(
@@ -153,10 +162,10 @@ class SafeStateWatch:
         return ""
 
 
-def _not_said(seen: Seen, end_ms: int) -> str:
+def _not_said(seen: Seen, end_ms: int, stays_ms: int) -> str:
     """Why a vehicle was not said to be in the safe state; empty if it was."""
-    if seen.circles_ms is None or not lasted(seen.circles_ms, end_ms, STAYS_MS):
-        return f"it was not said to circle for {STAYS_MS / 1000:g} s when the flight ended"
+    if seen.circles_ms is None or not lasted(seen.circles_ms, end_ms, stays_ms):
+        return f"it was not said to circle for {stays_ms / 1000:g} s when the flight ended"
     return ""
 
 

@@ -35,7 +35,7 @@ from cratous.services.parameters.merging import merging_rows
 from cratous.services.parameters.parameter import DEFAULT, DERIVED, FIXED, GIVEN, Parameter
 from cratous.services.parameters.sensed import SECTION, rows_of
 from cratous.services.parameters.take_off import take_off_rows
-from cratous.spec.mission import LivePlanningMission, Mission, Vehicle
+from cratous.spec.mission import Mission, Vehicle
 
 UNITS = {
     "_m_s2": "m/s^2",
@@ -95,7 +95,9 @@ def _of_mission(mission: Mission, written: Any) -> Iterator[Parameter]:
         ("simulation", "step_ms", simulation.step_ms),
         ("simulation", "heartbeat_ms", simulation.heartbeat_ms),
         ("simulation", "limit_s", simulation.limit_ms / 1000),
-        ("bridge", "uxas_route_planner", isinstance(mission, LivePlanningMission)),
+        ("bridge", "uxas_route_planner", mission.live_planning),
+        ("bridge", "lost_link_after_s", mission.bridge_times.lost_link_after_ms / 1000),
+        ("bridge", "safe_state_after_s", mission.bridge_times.safe_state_after_ms / 1000),
     ):
         path = (*section.split("."), name)
         facts = mission_schema()

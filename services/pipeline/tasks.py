@@ -19,6 +19,14 @@ from cratous.services.bus import Envelope
 from cratous.services.pipeline import planner, questions, sensors
 from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
 from cratous.services.pipeline.implementation import implemented, offer, way_asked
+from cratous.services.pipeline.off_plan import (
+    ALONE,
+    AUTHORITY,
+    HANDED_BACK,
+    WITH_UXAS,
+    away_after,
+    on_its_way,
+)
 from cratous.services.pipeline.questions import Asked
 from cratous.services.pipeline.request_end import request_ended
 from cratous.services.pipeline.status import status
@@ -47,9 +55,7 @@ NAMES = {
     TaskKind.AREA_SEARCH: "CmasiAreaSearchTaskService",
     TaskKind.PATTERN_SEARCH: "PatternSearchTaskService",
 }
-AUTHORITY, REMOVE = "cratous.AuthorityChange", "afrl.cmasi.RemoveTasks"
-WITH_UXAS, WITH_ICAROUS, HANDED_BACK = 0, 1, 2
-AWAY = {"ICAROUS": WITH_ICAROUS, "UxAS": HANDED_BACK}
+REMOVE = "afrl.cmasi.RemoveTasks"
 ROUTES_FROM = 2**60
 """Ids of a task's own route requests start here, beyond the aggregator's blocks."""
 
@@ -71,7 +77,8 @@ class State(NamedTuple):
 
     The kernel identifies requests by increasing tickets, since RequestIDs need not increase; tickets: the
     newest ones with their RequestIDs. asked: other services' answers about the options. away: whether ICAROUS
-    has the vehicle or has just handed it back: the tasks in its states then do not refer to the plan.
+    has the vehicle, it circles without the link, or either is just over: the tasks in its states then do not
+    refer to the plan.
     """
 
     task: Kernel = Kernel(0, 0, 0)
@@ -120,6 +127,7 @@ class TaskService:
         "afrl.cmasi.EntityState",
         REMOVE,
         AUTHORITY,
+        ALONE,
     )
 
     def __init__(
@@ -171,19 +179,15 @@ class TaskService:
         if topic in ("afrl.cmasi.AutomationResponse", REMOVE):
             gone = self._withdrawn(state, body)
             return self._advance(state, WITHDRAWN, 0, body) if gone else (state, ())
-        if topic == AUTHORITY:
-            return self._taken(state, body), ()
+        if topic in (AUTHORITY, ALONE):
+            if body.VehicleID == state.vehicle:
+                state = state._replace(away=away_after(state.away, topic, body))
+            return state, ()
         if not hasattr(body, "AssociatedTasks"):
             return state, ()
         if state.away == HANDED_BACK and state.vehicle == body.ID and on_its_way(body):
             state = state._replace(away=WITH_UXAS)
         return (state, ()) if state.away else self._flown(state, body)
-
-    def _taken(self, state: State, change: Any) -> State:
-        """ICAROUS takes the vehicle or hands it back: no task ends until it flies waypoints again."""
-        if change.VehicleID != state.vehicle:
-            return state
-        return state._replace(away=AWAY[change.Owner.name])
 
     def _requested(self, state: State, body: Any) -> tuple[State, Iterable[Any]]:
         """A request that cannot be planned is answered once per process, and affects no task."""
@@ -388,11 +392,6 @@ class TaskService:
     def stop(self, state: State) -> None:
         """The task has been removed."""
         self._when_ended()
-
-
-def on_its_way(body: Any) -> bool:
-    """Whether a state is of a vehicle that flies waypoints; assumed if it has no mode."""
-    return not hasattr(body, "Mode") or bool(body.Mode.name == "Waypoint")
 
 
 def _route_id(implementation: Any) -> int:

@@ -9,6 +9,7 @@ from typing import Any
 
 from cratous.services.exporting.differences import apart, spelt_out
 from cratous.services.exporting.messages import Told, messages_of
+from cratous.services.icarous_communication.unheard import CHOICES
 from cratous.services.loading import uxas_parts
 from cratous.services.loading.coordinates import Places
 from cratous.services.loading.uxas_cfg import Sent
@@ -82,8 +83,13 @@ def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, s
     yield "simulation.bridge_faults", faulty and original, fails, "no bridge_faults"
     sensed = mission.sensing is not None
     yield "sensing", sensed, "ICAROUS is given what sensors see", "no sensing"
-    lost = mission.link_loss is not None
-    yield "link_loss", lost, "the mission says what is flown without the link", "no link_loss"
+    loss = mission.link_loss
+    unflown = loss is not None and loss.choice.value not in CHOICES
+    what = "UxAS's end of the bridge flies no landing without the link"
+    yield "link_loss.choice", unflown, what, " or ".join(CHOICES)
+    deaf = loss is not None and original
+    what = "the original's clients have no heartbeat, so their silence does not show"
+    yield "link_loss", deaf, what, "no link_loss"
     after = on_failure_of(mission) is not None
     yield "on_failure", after, "the mission says what is flown after a failure", "no on_failure"
     merges = merging_of(mission) is not None

@@ -24,6 +24,7 @@ from cratous.services.processes.agreement import agrees
 from cratous.services.processes.amase import Amase, AmaseLost
 from cratous.services.processes.children import GRACE_S, Children, ProcessEnded, free_port
 from cratous.services.processes.direct_links import DirectLinks
+from cratous.services.processes.ending import Ending
 from cratous.services.processes.failing_bridge import FailingBridge
 from cratous.services.processes.files import (
     ORIGINAL_PORT,
@@ -35,7 +36,7 @@ from cratous.services.processes.files import (
 from cratous.services.processes.recorder import Recorder
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.mission import FaultySimulation, Mission
-from cratous.spec.mission.plan import Plan, in_part_of
+from cratous.spec.mission.plan import Plan
 
 Tell = Callable[[str], None]
 SIMULATOR, UXAS = "simulator", "uxas"
@@ -43,7 +44,7 @@ STARTS_S = 600.0
 """Time limit for starting all processes, which check the proofs first [s]."""
 SILENCE_S = 60.0
 """A simulator whose clock runs counts as stuck without a state for this long [s]; so does UxAS without a message,
-since it reports each heartbeat of an ICAROUS instance."""
+since it reports each heartbeat of an ICAROUS instance, unless it hears none of them."""
 PROGRESS_MS = 10_000
 LIMITS = Limits(waiting_bytes=64 << 20)
 LOOK_S = 0.2
@@ -120,9 +121,7 @@ class _Flight:
         self.commanded: set[int] = set()
         self.heard: list[Any] = []
         self.flown = False
-        self.complete: set[int] = set()
-        self.failed: dict[int, str] = {}
-        self.away: set[int] = set()
+        self.ending = Ending(plan, mission.bridge_times.safe_state_after_ms)
         self.news_s: dict[str, float] = {}
         self.look_s = 0.0
         self.stood: set[str] = set()
@@ -320,23 +319,13 @@ class _Flight:
         if not self.flown:
             self.heard.append(body)
             return
-        self.recorder.heard(body)
+        self.ending.heard(self.recorder.heard(body))
         self.news_s[UXAS] = time.monotonic()
-        kind = type(body).__name__
-        if kind == "TaskComplete":
-            self.complete.add(body.TaskID)
-        elif kind == "AuthorityChange":
-            {"ICAROUS": self.away.add, "UxAS": self.away.discard}[body.Owner.name](body.VehicleID)
-        elif kind == "ServiceStatus":
-            said = {pair.Key: pair.Value for pair in body.Info}
-            if said.get("TaskID", "").isdigit():
-                self.failed[int(said["TaskID"])] = said.get("reason", "it ends undone")
 
     # the flight -----------------------------------------------------------------------------------
 
     def run(self) -> Ended:
-        """Fly until UxAS reports that all tasks have ended, the limit is reached, or a process ends."""
-        asked = {item.task_id for item in self.plan.items}
+        """Fly until the flight ends (see `Ending`), or a process does."""
         outcome, why, say_ms = "", "", 0
         self.news_s = dict.fromkeys((SIMULATOR, UXAS), time.monotonic())
         try:
@@ -346,36 +335,32 @@ class _Flight:
                 if self.how.amase is not None and not self.how.amase.flies:
                     # an absent AMASE is waited for; UxAS's clock stands meanwhile
                     self.news_s = dict.fromkeys(self.news_s, time.monotonic())
+                if self.ending.unheard >= set(self.mission.instances):
+                    # UxAS, which reports heartbeats, has none to report
+                    self.news_s[UXAS] = time.monotonic()
                 for name, news_s in self.news_s.items():
                     if is_due(news_s + SILENCE_S, time.monotonic()):
                         raise Stuck(f"{name} has told nothing of the flight for {SILENCE_S:g} s")
                 if is_due(say_ms, now_ms):
                     say_ms = now_ms + PROGRESS_MS
                     self.how.tell(f"\r{now_ms / 1000:7.1f} s of flight: flying")
-                outcome = self._outcome(asked, is_due(self.mission.simulation.limit_ms, now_ms))
+                late = is_due(self.mission.simulation.limit_ms, now_ms)
+                outcome = self.ending.outcome(now_ms, late)
             self.children.watch()  # a flight in which a process has ended is incomplete
         except (ProcessEnded, Stuck, AmaseLost) as error:
             outcome, why = "", str(error)
         # after an aborted flight no task is reported as failed
-        for task in sorted(asked - self.complete) if outcome else ():
+        for task in sorted(self.ending.left) if outcome else ():
             self._failed(task, outcome)
         self.recorder.end(outcome)
         pids = {name: child.pid for name, child in self.children.running.items()}
         return Ended(outcome, why, pids, self.ports._asdict())
 
-    def _outcome(self, asked: set[int], late: bool) -> str:
-        """How the mission has ended, "" while it has not."""
-        left = asked - self.complete
-        if left <= self.failed.keys() and not self.away:
-            in_part = asked & {one.task_id for one in in_part_of(self.plan)}
-            return "failed" if left or in_part else "complete"
-        return "limit" if late else ""
-
-    def _failed(self, task: int, why: str) -> None:
+    def _failed(self, task: int, outcome: str) -> None:
         """Record a task that UxAS has not reported as complete."""
         vehicle = next(item.vehicle_id for item in self.plan.items if item.task_id == task)
-        text = f"not served when the flight ended ({why})"
-        self.recorder.failed(task, vehicle, self.failed.get(task, text))
+        why = self.ending.why(task, outcome, self.recorder.now_ms)
+        self.recorder.failed(task, vehicle, why)
 
     def close(self) -> None:
         """Close the connections, and continue stopped processes so that they can end."""

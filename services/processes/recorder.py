@@ -24,11 +24,11 @@ from cratous.spec.mission.plan import Plan
 HELD = 10
 """Number of recent instants held back for late messages from UxAS."""
 SIMULATION, UXAS, RECORDER = "simulation", "uxas", "recorder"
-TIMES = ("Time", "TimeTaskActivated", "TimeTaskCompleted")
+TIMES = ("Time", "Heard", "TimeTaskActivated", "TimeTaskCompleted")
 """Message fields with times of the simulator."""
 OF_TIME = frozenset(
     {"TaskActive", "TaskComplete", "GateState", "AuthorityChange", "Heartbeat", "BridgeStatus",
-     "ModeRefused", "CommandDropped"}
+     "ModeRefused", "CommandDropped", "LinkLossState"}
 )  # fmt: skip
 """The messages with such fields."""
 AT_CHANGE = {"ICAROUS": ("Suspended", "ICAROUS has the vehicle"), "UxAS": ("Active", "handed back")}
@@ -84,8 +84,8 @@ class Recorder:
         """Record the plan in force."""
         self._say(plan_accepted(self.now_ms, plan, frozenset()))
 
-    def heard(self, body: Any) -> None:
-        """Record a message of UxAS's bus."""
+    def heard(self, body: Any) -> Any:
+        """Record a message of UxAS's bus; returns it with times of the mission."""
         kind = type(body).__name__
         if kind in OF_TIME and self._zero_ms is not None:
             zero_ms = self._zero_ms
@@ -101,6 +101,7 @@ class Recorder:
                 self._ended(vehicle, body.TaskID, "Complete", "")
         elif kind == "AuthorityChange":
             self._authority(body)
+        return body
 
     def failed(self, task: int, vehicle: int, why: str) -> None:
         """Record a task that ended undone or did not end."""

@@ -16,8 +16,15 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
 from cratous.services.following.task_parameters import within
+from cratous.services.pipeline.off_plan import (
+    ALONE,
+    AUTHORITY,
+    HANDED_BACK,
+    WITH_UXAS,
+    away_after,
+    on_its_way,
+)
 from cratous.services.pipeline.status import status
-from cratous.services.pipeline.tasks import AUTHORITY, AWAY, HANDED_BACK, on_its_way
 from cratous.spec.errors import BadInput
 
 TASK, CONFIGURATION = "afrl.cmasi.Task", "afrl.cmasi.EntityConfiguration"
@@ -71,7 +78,7 @@ class OwnTask:
 
     label = ""
     subscribes: tuple[str, ...] = (
-        TASK, CONFIGURATION, STATE, REMOVE, UNIQUE, CHOICE, ROUTES, AUTHORITY,
+        TASK, CONFIGURATION, STATE, REMOVE, UNIQUE, CHOICE, ROUTES, AUTHORITY, ALONE,
     )  # fmt: skip
 
     def __init__(self, name: str, values: Mapping[str, Any]) -> None:
@@ -114,9 +121,9 @@ class OwnTask:
             left = {number: task for number, task in state.tasks.items() if number not in gone}
             active = {number: of for number, of in state.active.items() if number not in gone}
             return state._replace(tasks=left, active=active), ()
-        if topic == AUTHORITY:
-            away = {**state.away, body.VehicleID: AWAY[body.Owner.name]}
-            return state._replace(away=away), ()
+        if topic in (AUTHORITY, ALONE):
+            away = away_after(state.away.get(body.VehicleID, WITH_UXAS), topic, body)
+            return state._replace(away={**state.away, body.VehicleID: away}), ()
         if hasattr(body, "AssociatedTasks"):
             return self._flown(state, body)
         if hasattr(body, "NominalSpeed"):
@@ -196,7 +203,7 @@ class OwnTask:
         if state.away.get(body.ID) == HANDED_BACK and on_its_way(body):
             left = {number: at for number, at in state.away.items() if number != body.ID}
             state = state._replace(away=left)
-        if body.ID in state.away:
+        if state.away.get(body.ID, WITH_UXAS) != WITH_UXAS:
             return state, ()
         out, active = list[Any](), dict(state.active)
         for number in set(body.AssociatedTasks) & state.tasks.keys() - active.keys():

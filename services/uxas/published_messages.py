@@ -89,7 +89,7 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
         icarous_communication.IcarousCommunicationService,
         ("MissionCommand", "VehicleActionCommand", "TaskPause", "TaskResume", "ServiceStatus",
          "OwnRoutePlanner", "RoutePlanResponse", "BridgeStatus", "Heartbeat", "GateState",
-         "GatedCommand", "AuthorityChange", "ModeRefused"),
+         "GatedCommand", "AuthorityChange", "ModeRefused", "LinkLossState"),
     ),
     "DAIDALUS_WCV_Detection": (
         detection.DaidalusDetection,

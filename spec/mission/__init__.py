@@ -12,11 +12,14 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
 
+from cratous.spec.mission.bridge_times import USUAL, BridgeTimes
 from cratous.spec.mission.camera import Camera as Camera
 from cratous.spec.mission.guidance import Guidance
 from cratous.spec.mission.link_loss import LandingSite, WithoutLink
 from cratous.spec.mission.merging import Merging
 from cratous.spec.mission.on_failure import OnFailure
+from cratous.spec.mission.pattern import Pattern as Pattern
+from cratous.spec.mission.resolution import Resolution as Resolution
 from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.simulation import FaultySimulation as FaultySimulation
 from cratous.spec.mission.simulation import Simulation as Simulation
@@ -106,15 +109,6 @@ SEARCHES = (
 """The kinds served by camera coverage."""
 AREAS = (TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH)
 """The kinds for which an entire area has to be seen."""
-
-
-class Pattern(StrEnum):
-    """How a pattern search covers the surroundings of its centre."""
-
-    SPIRAL = "spiral"
-    SQUARE = "square"
-    SECTOR = "sector"
-    SWEEP = "sweep"
 
 
 @dataclass(frozen=True)
@@ -230,14 +224,6 @@ class GuidedWellClear(WellClear):
     """A volume for which the mission sets the persistence and hysteresis of alerts and bands."""
 
     guidance: Guidance = field(default_factory=Guidance)
-
-
-class Resolution(StrEnum):
-    """Kinds of resolution manoeuvres: heading: turns; altitude: climbs and descents; speed: slower or faster flight."""
-
-    HEADING = "heading"
-    ALTITUDE = "altitude"
-    SPEED = "speed"
 
 
 @dataclass(frozen=True)
@@ -372,6 +358,16 @@ class Mission:
         """What is flown while UxAS is not heard; None: not specified."""
         return self.daa.link_loss if isinstance(self.daa, LinkLossDaa) else None
 
+    @property
+    def bridge_times(self) -> BridgeTimes:
+        """How long the link may be silent, and a vehicle may circle without it."""
+        return self.bridge if isinstance(self, TimedBridgeMission) else USUAL
+
+    @property
+    def live_planning(self) -> bool:
+        """Whether an ICAROUS that commands its vehicle may ask UxAS for a path back."""
+        return isinstance(self, LivePlanningMission) and self.uxas_route_planner
+
     def vehicle(self, vehicle_id: int) -> Vehicle:
         """The vehicle with this id; KeyError if there is none."""
         for vehicle in self.vehicles:
@@ -392,3 +388,11 @@ class LivePlanningMission(Mission):
     """A mission in which UxAS plans in flight: an ICAROUS that commands its vehicle may request a path back."""
 
     uxas_route_planner: bool = True
+
+
+@dataclass(frozen=True)
+class TimedBridgeMission(LivePlanningMission):
+    """A mission with other times of the bridge than the usual ones."""
+
+    uxas_route_planner: bool = False
+    bridge: BridgeTimes = USUAL

@@ -20,15 +20,15 @@ from cratous.services.bus import Bus
 from cratous.services.cli.job import Settings, run_mission
 from cratous.services.flight import executive
 from cratous.services.flight.dynamics import turn_radius_m
-from cratous.services.flight.executive import SAFE_STATE, SAFE_STATE_MS
+from cratous.services.flight.executive import SAFE_STATE
 from cratous.services.flight.loop import fly
-from cratous.services.flight.lost_link import IN_HAND_AFTER_MS
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.system_model.replay import replay
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import FaultySimulation, Mission
 from cratous.spec.mission.bridge_faults import BridgeFaults
+from cratous.spec.mission.bridge_times import USUAL
 
 FAULTS = {
     "loss": BridgeFaults(1, loss=0.4),
@@ -179,8 +179,8 @@ def test_a_flight_that_never_hears_uxas_again_ends_in_the_declared_safe_state(
     modes = [(one.Time, one.Mode.name) for one in bodies["LinkLossState"]]
     assert [name for _, name in modes] == (["Finish", "Over"] if known else ["Loiter"])
     taken_ms = bodies["AuthorityChange"][0].Time
-    assert modes[0][0] == taken_ms + IN_HAND_AFTER_MS + mission.simulation.heartbeat_ms
-    assert result.end_ms == modes[-1][0] + SAFE_STATE_MS
+    assert modes[0][0] == taken_ms + USUAL.lost_link_after_ms + mission.simulation.heartbeat_ms
+    assert result.end_ms == modes[-1][0] + USUAL.safe_state_after_ms
     places = [
         (one.North, one.East)
         for one in bodies["TruthState"]

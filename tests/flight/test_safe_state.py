@@ -15,17 +15,17 @@ from flight_tools import meeting
 from ground_tools import Flown, flown_of
 
 from cratous.bridge import lmcp
-from cratous.judge import failures
 from cratous.judge import safe_state as judge_safe_state
+from cratous.judge.mission import Mission as JudgedMission
 from cratous.services.flight import executive
-from cratous.services.flight.lost_link import IN_HAND_AFTER_MS
 from cratous.services.icarous.route_end import TURN_MARGIN
 from cratous.services.loading import load
-from cratous.services.monitor import Monitor, failure, safe_state
+from cratous.services.monitor import Monitor, safe_state
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.system_model.replay import replay
 from cratous.spec.mission import FaultySimulation, Zone, ZoneKind
 from cratous.spec.mission.bridge_faults import BridgeFaults
+from cratous.spec.mission.bridge_times import USUAL
 
 ROW = "circle of vehicle 1 at the end"
 Bodies = Callable[[str, dict[str, Any], int], dict[str, Any] | None]
@@ -194,6 +194,39 @@ def test_what_cannot_bank_flies_no_circle(circles: Flown, tmp_path: Path) -> Non
     assert circles._replace(mission=mission).judged(tmp_path)[ROW] == "violated"
 
 
+def sooner(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any]:
+    """It is said to circle only in the last 32 s, longer than this mission asks for and shorter than usual."""
+    if name == "LinkLossState" and body["Mode"].name in ("Over", "Loiter"):
+        return {**body, "Time": end_ms - 32_000}
+    return body
+
+
+def test_the_mission_says_how_long_the_silence_and_the_circle_last(
+    root: Path, tmp_path: Path
+) -> None:
+    data = yaml.safe_load((root / "examples/crossing/mission.yaml").read_text())
+    del data["expect"]
+    data |= {"bridge": {"lost_link_after_s": 6, "safe_state_after_s": 31}}
+    data |= {"simulation": {"limit_s": 900, "bridge_faults": {"seed": 1, "cut_s": 25}}}
+    path = tmp_path / "mission.yaml"
+    path.write_text(yaml.safe_dump(data))
+    flight = flown_of(load(path))
+    assert flight.result.outcome == safe_state.SAFE_STATE
+    modes = flight.told("LinkLossState")
+    first, last = modes[0], [one for one in modes if one.Mode.name == "Over"][-1]
+    assert first.Time - first.Heard in range(6000, 8001)
+    assert flight.result.end_ms - last.Time in range(31_000, 31_501)
+    assert any("6 s of silence" in note for note in flight.mission.notes)
+    item = f"circle of vehicle {last.VehicleID} at the end"
+    assert flight.verdicts()[item].outcome.value == flight.judged(tmp_path)[item] == "holds"
+    log = changed(flight, sooner)
+    usual = flight._replace(mission=replace(flight.mission, bridge=USUAL))
+    assert flight.verdicts(log)[item].outcome.value == flight.judged(tmp_path, log)[item] == "holds"
+    assert (
+        usual.verdicts(log)[item].outcome.value == usual.judged(tmp_path, log)[item] == "violated"
+    )
+
+
 @pytest.fixture(scope="module")
 def unfailing(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Flown:
     data = yaml.safe_load((root / "examples/crossing/mission.yaml").read_text())
@@ -264,7 +297,7 @@ def test_forged_failures_are_no_way_out_of_the_row(unfailing: Flown, tmp_path: P
 
 def test_what_is_compared_is_what_is_flown() -> None:
     assert executive.SAFE_STATE == safe_state.SAFE_STATE == judge_safe_state.SAFE_STATE
-    assert executive.SAFE_STATE_MS == safe_state.STAYS_MS == judge_safe_state.LAST_MS
     assert TURN_MARGIN == safe_state.WIDER == judge_safe_state.WIDER
-    assert IN_HAND_AFTER_MS == failure.SILENT_MS == failures.SILENT_MS
+    assert JudgedMission.lost_link_after_ms == USUAL.lost_link_after_ms
+    assert JudgedMission.safe_state_after_ms == USUAL.safe_state_after_ms
     assert safe_state.MARGIN_M == judge_safe_state.MARGIN_M

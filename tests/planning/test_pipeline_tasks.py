@@ -87,6 +87,21 @@ def test_a_takeover_completes_no_task(tmp_path: Path) -> None:
     assert [b.TimeTaskCompleted for b in rig.got("TaskComplete")] == [60]
 
 
+@pytest.mark.shows(TASKS, "LinkLossState")
+def test_a_circle_without_the_link_completes_no_task(tmp_path: Path) -> None:
+    def alone(mode: str, number: int = 1) -> Any:
+        return lmcp.new("LinkLossState", VehicleID=number, Mode=mode)
+
+    rig = Rig(tmp_path)
+    rig.tell(*vehicle(1), *vehicle(2, 0.01), loiter(5), request(5))
+    rig.tell(flying(1, 5, time=10), alone("Loiter", 2), alone("Finish"), flying(1, 5, time=20))
+    rig.tell(alone("Loiter"), flying(1, time=30).copy(Mode="Loiter"), alone("Linked"))
+    rig.tell(flying(1, time=40).copy(Mode="Loiter"), flying(1, 5, time=50))
+    assert not rig.got("TaskComplete")
+    rig.tell(flying(1, time=60))
+    assert [b.TimeTaskCompleted for b in rig.got("TaskComplete")] == [60]
+
+
 @pytest.mark.shows(TASKS, "AutomationResponse", "ServiceStatus")
 def test_a_task_whose_plan_is_withdrawn_says_that_it_ends_undone(tmp_path: Path) -> None:
     rig = Rig(tmp_path)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -15,6 +15,7 @@ from cratous.services.cli import main
 from cratous.services.loading import load
 from cratous.services.loading.uxas import load_uxas
 from cratous.services.loading.uxas_settings import read as read_cfg
+from cratous.services.mission.frames import Projection
 from cratous.services.processes.agreement import agrees
 from cratous.services.processes.coverage import told_of
 from cratous.services.processes.files import (
@@ -27,14 +28,20 @@ from cratous.services.simulator.scenario import read as read_scenario
 from cratous.services.simulator.world import World
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import (
+    Daa,
     FaultySimulation,
+    LinkLoss,
+    LinkLossDaa,
     Mission,
     Position,
     Simulation,
     TaskKind,
+    TimedBridgeMission,
     Traffic,
     Velocity,
 )
+from cratous.spec.mission.bridge_times import BridgeTimes
+from cratous.spec.mission.link_loss import WithoutLink
 
 
 def crossing(root: Path) -> Mission:
@@ -113,6 +120,45 @@ def test_what_cannot_be_flown_is_refused_by_its_field(
         told_of(change(crossing(root)))
     assert wrong.value.item == item
     assert "--processes" in wrong.value.expected
+
+
+@pytest.mark.parametrize("choice", list(WithoutLink))
+def test_without_the_link_uxas_flies_all_but_a_landing(
+    root: Path, tmp_path: Path, choice: WithoutLink
+) -> None:
+    plain = crossing(root)
+    to = Position(300.0, 900.0, 250.0) if choice is WithoutLink.RETURN else None
+    kept = {f.name: getattr(plain.daa, f.name) for f in fields(Daa)}
+    mission = replace(plain, daa=LinkLossDaa(**kept, link_loss=LinkLoss(choice, 7000, to)))
+    with pytest.raises(BadInput) as wrong:
+        told_of(mission, original=choice is not WithoutLink.LAND)
+    if choice is WithoutLink.LAND:
+        assert wrong.value.item == "link_loss.choice"
+        assert wrong.value.expected.startswith("finish or loiter or return")
+        return
+    assert wrong.value.item == "link_loss"
+    told_of(mission)
+    cfg = write_configuration(mission, mission.instances, Ports(1001, 1002, 1003), tmp_path)
+    given = next(
+        e.attributes for e in read_cfg(cfg).entries if e.type == "IcarousCommunicationService"
+    )
+    assert (given["LostLink"], given["LostLinkAfter_s"]) == (choice.value, "7")
+    if to is not None:
+        lat, long, alt = map(float, given["LostLinkTo"].split())
+        assert Projection(mission.frame).to_local(lat, long) == pytest.approx(to[:2], abs=0.001)
+        assert alt == to.alt_m
+    assert ("LostLinkTo" in given) == (to is not None)
+
+
+def test_the_silence_of_the_mission_is_told(root: Path, tmp_path: Path) -> None:
+    ports, plain = Ports(1001, 1002, 1003), crossing(root)
+    kept = {f.name: getattr(plain, f.name) for f in fields(Mission)}
+    timed = TimedBridgeMission(**kept, bridge=BridgeTimes(9500, 60_000))
+    for mission, expected in ((plain, None), (timed, "9.5")):
+        cfg = write_configuration(mission, mission.instances, ports, tmp_path)
+        (entry,) = [e for e in read_cfg(cfg).entries if e.type == "IcarousCommunicationService"]
+        assert entry.attributes.get("LostLinkAfter_s") == expected
+        assert "LostLink" not in entry.attributes
 
 
 def test_a_bridge_to_the_original_s_clients_is_not_made_to_fail(root: Path) -> None:

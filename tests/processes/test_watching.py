@@ -79,7 +79,7 @@ def test_a_flight_of_which_a_process_ends_with_the_last_task_is_not_whole(
     root: Path, ended: bool, outcome: str
 ) -> None:
     one = flight(root, ended)
-    one._turn = lambda: one.complete.update((1, 2))
+    one._turn = lambda: one.ending.complete.update((1, 2))
     done = one.run()
     assert (done.outcome, bool(done.why)) == (outcome, ended)
     assert one.recorder.ends == (outcome or "cut off")
@@ -97,6 +97,27 @@ def test_one_that_runs_and_says_nothing_ends_the_flight(
     one._turn = lambda: one.news_s.update({talks: float(next(now_s))})
     done = one.run()
     assert (done.outcome, done.why) == ("", f"{silent} has told nothing of the flight for 60 s")
+
+
+def test_uxas_may_be_silent_while_it_hears_no_icarous(
+    root: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It reports the heartbeats of ICAROUS; the flight ends at its limit, or in the safe state."""
+    now_s = iter(range(10_000))
+    clock = SimpleNamespace(monotonic=lambda: float(next(now_s)))
+    monkeypatch.setattr(flights, "time", clock)
+    one, turns = flight(root, ended=False), iter(range(1000))
+    one.ending.unheard |= set(one.mission.instances)
+
+    def turn() -> None:
+        one.news_s[flights.SIMULATOR] = float(next(now_s))
+        if next(turns) == 100:
+            one.ending.unheard.pop()
+
+    one._turn = turn
+    done = one.run()
+    assert next(turns) > 105, "only since one is heard"
+    assert done.why == "uxas has told nothing of the flight for 60 s"
 
 
 def test_whoever_tells_something_of_the_flight_is_not_silent(root: Path) -> None:

@@ -1,5 +1,5 @@
 """Lines of the CRATOUS text protocol, changed at random, against the parsers of both ends in each dialect: none may
-raise, and how the bytes are cut must change nothing. `python tests/programs/fuzz_lines.py [--lines 10000000] [--seed 1]`
+raise, each line must be a message, unknown there or refused, and how the bytes are cut must change nothing. `python tests/programs/fuzz_lines.py [--lines 10000000] [--seed 1]`
 
 Changed are bytes, numbers, fields and whole lines: taken out, doubled, exchanged, put in. In v2 it is packets that are
 changed, and what is left whole goes on to the parser. Ends with 1 at the first fault.
@@ -17,6 +17,7 @@ from typing import Any
 from cratous.bridge.text_protocol import Direction, Message, StreamParser
 from cratous.bridge.text_protocol.authenticated_lines import Seal
 from cratous.bridge.text_protocol.dialects import Dialect
+from cratous.bridge.text_protocol.parser import Skipped
 
 GOOD = b"""\
 POSTN,timegps1.010000,lat37.099997,long-76.424616,altabs300.000000,altrel300.000000,north-0.002177,east22.000000,\
@@ -80,6 +81,14 @@ class End:
         return records + self._parser.finish(), refused
 
 
+def unaccounted(data: bytes, sealed: bool, records: list[Any], refused: list[Any]) -> int:
+    """How many lines are neither a message, nor unknown, nor refused. sealed: a packet cut off at the end is not read."""
+    lines = data.count(b"\n") + (not sealed and data[-1:] != b"\n")
+    # what is skipped behind column 1 is a field of a message
+    once = sum(not (isinstance(one, Skipped) and one.column > 1) for one in records)
+    return lines - once - len(refused)
+
+
 def written(dialect: Dialect | None, seal: Seal, draw: random.Random) -> bytes:
     """A line as it stands on the wire."""
     line = draw.choice(GOOD)
@@ -120,7 +129,7 @@ def changed(line: bytes, draw: random.Random) -> bytes:
 
 
 def main() -> int:
-    """Print how many were read and refused; 1 if a parser raised or reads otherwise when cut."""
+    """Print how many were read and refused; 1 if a parser raised, left a line out, or reads otherwise when cut."""
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--lines", type=int, default=10_000_000)
     options.add_argument("--seed", type=int, default=1)
@@ -142,6 +151,11 @@ def main() -> int:
         if (records, refused) != again:
             print(
                 f"seed {asked.seed}, after {number:,} lines: another reading when cut at {at}: {data!r}"
+            )
+            return 1
+        if lost := unaccounted(data, dialect is None, records, refused):
+            print(
+                f"seed {asked.seed}, after {number:,} lines: {lost} lines unaccounted for: {data!r}"
             )
             return 1
         counts.update("read" if isinstance(one, Message) else type(one).__name__ for one in records)

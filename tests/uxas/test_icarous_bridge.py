@@ -260,12 +260,26 @@ def test_the_mission_is_the_one_that_is_expected_and_says_how_it_is_flown(tmp_pa
     assert (craft.step_s, craft.config.heartbeat_ms) == (1.0, 1000)
 
 
-def test_a_mission_that_says_what_is_flown_without_the_link_is_refused(tmp_path: Path) -> None:
-    path = mission_file(tmp_path)
-    path.write_text(path.read_text() + "link_loss: {choice: loiter}\n")
+@pytest.mark.parametrize("choice", ["finish", "loiter", "return", "land"])
+def test_a_mission_that_has_vehicles_land_without_the_link_is_refused(
+    tmp_path: Path, choice: str
+) -> None:
+    """All else is flown by UxAS's end, and changes nothing here."""
+    path, more = mission_file(tmp_path), f"link_loss: {{choice: {choice}}}\n"
+    plain = craft_of(path, 1, Dialect.CRATOUS)
+    if choice == "land":
+        place = "{north_m: 300, east_m: 1500}"
+        more += f"landing_sites: [{{name: field, position: {place}, radius_m: 200}}]\n"
+    path.write_text(path.read_text() + more)
+    if choice != "land":
+        craft = craft_of(path, 1, Dialect.CRATOUS)
+        assert craft.config.lost_link is None
+        assert (craft.floor_m, craft.cooperating) == (plain.floor_m, plain.cooperating)
+        return
     with pytest.raises(BadInput) as caught:
         craft_of(path, 1, Dialect.CRATOUS)
-    assert caught.value.item == "link_loss"
+    assert caught.value.item == "link_loss.choice"
+    assert caught.value.got == "land"
 
 
 def test_the_secret_of_the_environment_is_checked_and_not_shown(

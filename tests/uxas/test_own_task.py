@@ -12,7 +12,7 @@ from uxas_tools import process
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
-from cratous.services.pipeline.tasks import AWAY
+from cratous.services.pipeline.off_plan import AWAY
 from cratous.services.uxas import own_task
 from cratous.spec.errors import BadInput
 
@@ -173,3 +173,24 @@ def test_no_task_ends_while_icarous_has_its_vehicle() -> None:
         state, out = ours.handle(state, Envelope(0, 0, "sim", topic, body), 0)
         said.append(len([*out]))
     assert said == [0, 0, 0, 0, 0, 1]
+
+
+def test_no_task_ends_while_its_vehicle_circles_without_the_link() -> None:
+    ours = Ring("ring", {})
+    state = own_task.Held(tasks={7: lmcp.new("Task", TaskID=7)}, active={7: 1})
+    modes = {m: lmcp.new("LinkLossState", VehicleID=1, Mode=m) for m in ("Loiter", "Linked")}
+    seen = lmcp.new("AirVehicleState", ID=1, Mode="Loiter", Time=9_000)
+    on = seen.copy(Mode="Waypoint", AssociatedTasks=[7])
+    taken = lmcp.new("AuthorityChange", VehicleID=1, Owner="ICAROUS")
+    back = lmcp.new("AuthorityChange", VehicleID=1, Owner="UxAS")
+    topics = {"LinkLossState": own_task.ALONE, "AuthorityChange": own_task.AUTHORITY}
+    said: list[int] = []
+    for body in (
+        *(modes["Linked"], on, modes["Loiter"], seen, modes["Linked"], seen),
+        *(modes["Loiter"], taken, modes["Linked"], seen, on.copy(AssociatedTasks=[]), back),
+        *(on, on.copy(AssociatedTasks=[])),
+    ):
+        topic = topics.get(type(body).__name__, own_task.STATE)
+        state, out = ours.handle(state, Envelope(0, 0, "sim", topic, body), 0)
+        said.append(len([*out]))
+    assert said == [0] * 13 + [1]
