@@ -2,7 +2,7 @@
 
 Each stay of a vehicle in the entry zone, the closed disc about the fix, is one passage, at the first instant at
 which it is nearest to the fix. On a leg a + t v that is t = -a.v / |v|^2, clipped to the leg: a rational number,
-without a square root.
+without a square root. Where one of the two did not pass, nothing can be compared, and the row is unknown.
 """
 
 from __future__ import annotations
@@ -48,6 +48,8 @@ def _row(
         return Row("G1", subject, item, VIOLATED, note, int(at), len(gaps))
     lacking = [f"no position of {n} was logged" for n in pair if n not in flown]
     doubts = [*lacking, *(flown[n].doubt for n in pair if n in flown and flown[n].doubt)]
+    if not gaps:
+        doubts.append("nothing to compare")
     if doubts:
         return Row("G1", subject, item, UNKNOWN, f"{doubts[0]}; {note}", None, len(gaps))
     return Row("G1", subject, item, HOLDS, note, None, len(gaps))

@@ -91,11 +91,14 @@ def test_each_stay_at_the_fix_is_one_passage(
     assert verdict.checks == passages
 
 
-def test_a_pair_that_does_not_pass_shows_nothing(root: Path) -> None:
-    """With no check, the row is listed as not shown."""
-    verdict, judged = seen(root, straight(30_000), far)
-    assert (verdict.outcome, judged) == (Outcome.HOLDS, "holds")
+@pytest.mark.parametrize(("one", "passed"), [(straight(30_000), True), (far, False)])
+def test_a_pair_of_which_one_does_not_pass_is_unknown(root: Path, one: East, passed: bool) -> None:
+    """It held with 0 checks, also where neither passed."""
+    verdict, judged = seen(root, one, far)
+    assert (verdict.outcome, judged) == (Outcome.UNKNOWN, "unknown")
     assert (verdict.checks, verdict.kernels, verdict.margin) == (0, (), None)
+    assert verdict.note.startswith("no two passages to compare; ")
+    assert ("vehicle 1 did not pass" in verdict.note) is not passed
     assert "vehicle 2 did not pass" in verdict.note
 
 
