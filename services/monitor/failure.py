@@ -21,7 +21,6 @@ from cratous.core.avoidance.landing import on_ground
 from cratous.core.kernel import qualified
 from cratous.services.assumptions.authority import reported
 from cratous.services.mission.landing import on_failure_of
-from cratous.services.mission.merging import merging_of
 from cratous.services.monitor.landing import Down
 from cratous.services.monitor.link_loss import EITHER, NO_LOSS, LinkLossWatch
 from cratous.services.monitor.link_loss import Told as Flown
@@ -69,7 +68,6 @@ class FailureWatch(LinkLossWatch):
         """down: vehicles on the ground, by their positions; presence: observation spans of each aircraft."""
         super().__init__(mission, down, presence)
         self._after = on_failure_of(mission)
-        self._merges_or_senses = mission.sensing is not None or merging_of(mission) is not None
         there = mission.instances if self._after is not None else ()
         self._seen = {number: Told() for number in there}
         self._told = dict(self._seen)
@@ -115,7 +113,8 @@ class FailureWatch(LinkLossWatch):
             for seen in (Seen(stopped, flies, without, since_ms, surprised, now_ms),)
         }
         after = Failure(kind, now_ms)
-        if after == told.failure or after not in may or told.failure.kind != NONE:
+        # after a failure no other one may follow, and the same one is not declared again
+        if after == told.failure or after not in may:
             told.wrong.append((now_ms, f"{name} is not what could be declared then"))
         if kind == BLOCKED and not told.blocked:
             told.wrong.append((now_ms, "blocked is declared, and no task of it was given up"))
@@ -154,7 +153,7 @@ class FailureWatch(LinkLossWatch):
             # whether the vehicle was out of ICAROUS's hand meanwhile, which counts as heard, is seen by its gate
             for heard_ms in ((body.Heard,) if _flies(told) else (body.Heard, now_ms))
         }
-        if self._merges_or_senses or mode not in may or int(body.Chosen) != FINISH:
+        if mode not in may or int(body.Chosen) != FINISH:
             told.wrong.append((now_ms, f"{body.Mode.name} is not what follows then"))
         elif not _flies(told) and mode != LINKED:
             told.wrong.append((now_ms, f"{body.Mode.name} is flown, and UxAS has it"))

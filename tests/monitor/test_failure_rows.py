@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from flight_logs import ALT_M, both_of, gate, log_of, message, mission_of, says, sent
+from ground_tools import Flown
 
 from cratous.spec.mission import Mission
 
@@ -77,12 +78,14 @@ EXPIRING = (TAKEN, MISSING, declared("Expiring"), holds_from())
         # certificates were there until less than four heartbeats before
         ((TAKEN, hand("Missing", 8001), declared("Expiring"), holds_from()), BAD),
         ((TAKEN, declared("Expiring"), holds_from()), BAD),
+        ((TAKEN, hand("Known", 7000), declared("Expiring"), holds_from()), BAD),
         ((TAKEN, MISSING, hand("Offered", 8500), declared("Expiring"), holds_from()), BAD),
         ((TAKEN, MISSING, hand("Offered", 8500), hand("Missing", 9000), *EXPIRING[2:]), BAD),
         ((TAKEN, MISSING, hand("Missing", 9000), *EXPIRING[2:]), GOOD),
         ((TAKEN, MISSING, hand("Known", 9000), *EXPIRING[2:]), GOOD),
         # a failure is for good
         ((*BLOCKED, declared("Blocked", 20_000)), BAD),
+        ((*BLOCKED, *BLOCKED[2:]), BAD),
         ((*BLOCKED, MISSING, declared("Expiring", 20_000)), BAD),
         # what is flown then
         (BLOCKED[:-1], BAD),
@@ -128,6 +131,40 @@ def test_what_is_flown_without_the_link_before_a_failure(
     mission: Mission, said: tuple[Any, ...], expected: str, tmp_path: Path
 ) -> None:
     assert verdicts(mission, tmp_path, *said) == (expected, expected)
+
+
+@pytest.mark.parametrize(
+    ("said", "note"),
+    [
+        ((), "it declared no failure"),
+        (BLOCKED, "blocked at 10.00 s, Loiter from 10.00 s"),
+        ((TAKEN, FLIES_ON), "Finish from 40.00 s, without the link"),
+        # what others say is not of this vehicle
+        (
+            (given_up(vehicle=9), gate("ICAROUS", 1, 9), says("Over", 2, 9)),
+            "it declared no failure",
+        ),
+        (
+            (
+                message("FailureState", 1, VehicleID=9, Failure="Ended"),
+                message("HandState", 1, VehicleID=9, Change="Missing"),
+            ),
+            "it declared no failure",
+        ),
+    ],
+)
+def test_the_row_tells_what_was_said(
+    mission: Mission, said: tuple[Any, ...], note: str, tmp_path: Path
+) -> None:
+    log = log_of({}, *said, end_ms=END_MS, outcome="failed")
+    flight = Flown(mission, log, None)  # type: ignore[arg-type]
+    assert flight.verdicts()[ROW].note == note
+    assert flight.judged(tmp_path)[ROW] == GOOD
+
+
+def test_a_mission_that_asks_about_none_has_no_row(root: Path, tmp_path: Path) -> None:
+    mission = mission_of(root, tmp_path, on_failure=None, landing_sites=None)
+    assert verdicts(mission, tmp_path, *BLOCKED) == ("", "")
 
 
 def test_failures_that_a_mission_does_not_ask_about(root: Path, tmp_path: Path) -> None:

@@ -105,6 +105,23 @@ def test_it_is_said_to_circle_and_does(
 
 def test_another_end_has_no_rows(mission: Mission, tmp_path: Path) -> None:
     assert both(mission, log_of({1: circle}, *ALONE, outcome="complete"), tmp_path) == {}
+    assert both(mission, log_of({1: circle}, *ALONE)[:-1], tmp_path) == {}
+
+
+def test_a_failure_that_was_not_asked_about_is_no_excuse(root: Path, tmp_path: Path) -> None:
+    mission = mission_of(root, tmp_path, on_failure=None, landing_sites=None)
+    assert both(mission, log_of({1: circle}, *ALONE, failed(1)), tmp_path) == {1: "holds"}
+
+
+def test_the_row_tells_how_wide_it_flew(mission: Mission, tmp_path: Path) -> None:
+    flight = Flown(mission, log_of({1: circle}, *ALONE), None)  # type: ignore[arg-type]
+    found = flight.verdicts()[row(1)]
+    assert found.note == (
+        "in the last 120 s within 100.0 m of one place; a circle of 114.0 m is allowed; "
+        "said to circle from 20.00 s"
+    )
+    assert (found.margin, found.unit) == (pytest.approx(14.0, abs=0.1), "m")
+    assert found.checks == LAST_MS // STEP_MS + 1
 
 
 def test_a_command_does_not_tell_who_has_it(mission: Mission, tmp_path: Path) -> None:
