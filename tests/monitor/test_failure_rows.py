@@ -37,9 +37,11 @@ TAKEN, UXAS_LAST = gate("ICAROUS", 5000), gate("ICAROUS", 10_000)
 MISSING = hand("Missing", 8000)
 
 
-@pytest.fixture
-def mission(root: Path, tmp_path: Path) -> Mission:
-    return mission_of(root, tmp_path, on_failure={"choice": "hold"}, landing_sites=None)
+@pytest.fixture(scope="module")
+def mission(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Mission:
+    return mission_of(
+        root, tmp_path_factory.mktemp("mission"), on_failure={"choice": "hold"}, landing_sites=None
+    )
 
 
 def verdicts(mission: Mission, folder: Path, *said: Any, ends: bool = True) -> tuple[str, str]:
@@ -72,6 +74,8 @@ EXPIRING = (TAKEN, MISSING, declared("Expiring"), holds_from())
         ((TAKEN, *ENDED), BAD),
         ((TAKEN, gate("UxAS", 6000), *ENDED), GOOD),
         ((TAKEN, gate("UxAS", 6000), *BLOCKED[1:]), BAD),
+        ((TAKEN, gate("UxAS", 6000), *ENDED[::2]), BAD),
+        ((*BLOCKED, gate("ICAROUS", 20_000), gate("UxAS", 20_500, 2)), GOOD),
         (ENDED[::2], BAD),
         ((*ENDED, gate("UxAS", 20_000)), BAD),
         ((*ENDED, gate("UxAS", 20_000), gate("ICAROUS", 21_000)), BAD),
@@ -83,6 +87,7 @@ EXPIRING = (TAKEN, MISSING, declared("Expiring"), holds_from())
         ((TAKEN, MISSING, hand("Offered", 8500), hand("Missing", 9000), *EXPIRING[2:]), BAD),
         ((TAKEN, MISSING, hand("Missing", 9000), *EXPIRING[2:]), GOOD),
         ((TAKEN, MISSING, hand("Known", 9000), *EXPIRING[2:]), GOOD),
+        ((*EXPIRING, hand("Offered", 20_000)), GOOD),
         # a failure is for good
         ((*BLOCKED, declared("Blocked", 20_000)), BAD),
         ((*BLOCKED, *BLOCKED[2:]), BAD),
@@ -105,6 +110,7 @@ def test_a_failure_and_what_is_flown_then(
     assert verdicts(mission, tmp_path, *said) == (expected, expected)
 
 
+COMMAND = sent(20_000, "GatedCommand", VehicleID=1, Sender="UxAS", Epoch=1)
 FLIES_ON = says("Finish", 40_000, Heard=9999)
 """UxAS was heard last 30.001 s before."""
 
@@ -116,6 +122,8 @@ FLIES_ON = says("Finish", 40_000, Heard=9999)
         ((TAKEN, FLIES_ON, says("Over", 50_000, Heard=9999)), GOOD),
         ((TAKEN, FLIES_ON, says("Linked", 50_000, Heard=49_900)), GOOD),
         ((TAKEN, FLIES_ON, says("Linked", 50_000, Heard=49_900), gate("UxAS", 50_500)), GOOD),
+        ((TAKEN, FLIES_ON, gate("UxAS", 49_950), says("Linked", 50_000, Heard=49_900)), GOOD),
+        ((TAKEN, gate("UxAS", 20_000, 2), COMMAND, FLIES_ON), GOOD),
         ((TAKEN, says("Finish", 40_000, Heard=10_000)), BAD),
         ((TAKEN, says("Over", 40_000, Heard=9999)), BAD),
         ((TAKEN, says("Finish", 40_000, Heard=9999, Chosen="Loiter")), BAD),
@@ -186,6 +194,7 @@ def test_what_is_not_whole_is_unknown(mission: Mission, tmp_path: Path) -> None:
     assert verdicts(mission, tmp_path, *BLOCKED, ends=False) == ("unknown", "unknown")
     assert verdicts(mission, tmp_path, ends=False) == ("unknown", "unknown")
     assert verdicts(mission, tmp_path, *BLOCKED[:2], ends=False) == ("unknown", "unknown")
+    assert verdicts(mission, tmp_path, *ENDED[::2], ends=False) == ("unknown", "unknown")
     # what is wrong is wrong without an end
     assert verdicts(mission, tmp_path, TAKEN, *ENDED, ends=False) == (BAD, BAD)
 
@@ -223,7 +232,6 @@ def test_a_landing_is_judged_by_its_positions(
 
 
 def test_a_command_of_uxas_takes_no_vehicle_back(mission: Mission, tmp_path: Path) -> None:
-    late = sent(20_000, "GatedCommand", VehicleID=1, Sender="UxAS", Epoch=1)
-    assert verdicts(mission, tmp_path, *BLOCKED, late) == (GOOD, GOOD)
+    assert verdicts(mission, tmp_path, *BLOCKED, COMMAND) == (GOOD, GOOD)
     early = sent(9500, "GatedCommand", VehicleID=1, Sender="UxAS", Epoch=1)
     assert verdicts(mission, tmp_path, *BLOCKED[:2], early, *BLOCKED[2:]) == (GOOD, GOOD)

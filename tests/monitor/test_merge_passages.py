@@ -40,6 +40,11 @@ def far(now_ms: int) -> float:
     return 5000.0
 
 
+def turns_before(now_ms: int) -> float:
+    """It comes straight up to 1000 m before the fix, and goes back."""
+    return 1000 + abs(60_000 - now_ms) / 1000 * SPEED_M_S
+
+
 def there_and_back(now_ms: int) -> float:
     """It passes at 20 s, turns 1200 m behind the fix, and passes at 100 s."""
     return min(now_ms - 20_000, 100_000 - now_ms) / 1000 * SPEED_M_S
@@ -91,10 +96,13 @@ def test_each_stay_at_the_fix_is_one_passage(
     assert verdict.checks == passages
 
 
+@pytest.mark.parametrize("other", [far, turns_before])
 @pytest.mark.parametrize(("one", "passed"), [(straight(30_000), True), (far, False)])
-def test_a_pair_of_which_one_does_not_pass_is_unknown(root: Path, one: East, passed: bool) -> None:
+def test_a_pair_of_which_one_does_not_pass_is_unknown(
+    root: Path, one: East, passed: bool, other: East
+) -> None:
     """It held with 0 checks, also where neither passed."""
-    verdict, judged = seen(root, one, far)
+    verdict, judged = seen(root, one, other)
     assert (verdict.outcome, judged) == (Outcome.UNKNOWN, "unknown")
     assert (verdict.checks, verdict.kernels, verdict.margin) == (0, (), None)
     assert verdict.note.startswith("no two passages to compare; ")

@@ -69,9 +69,9 @@ def both(mission: Mission, log: list[Any], folder: Path) -> dict[int, str]:
     return found
 
 
-@pytest.fixture
-def mission(root: Path, tmp_path: Path) -> Mission:
-    return mission_of(root, tmp_path)
+@pytest.fixture(scope="module")
+def mission(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Mission:
+    return mission_of(root, tmp_path_factory.mktemp("mission"))
 
 
 BEGUN = END_MS - LAST_MS
@@ -144,6 +144,7 @@ def test_the_first_of_its_places_counts(mission: Mission, tmp_path: Path) -> Non
     ("path", "gap", "expected"),
     [
         (circle, range(20_000, 25_000), "holds"),
+        (circle, range(5000), "holds"),
         (circle, range(60_000, 65_000), "unknown"),
         # last seen before, and far from its circle: that is no place of its last two minutes
         (from_far(20_000), range(BEGUN - 250, END_MS + 1), "unknown"),
@@ -254,6 +255,14 @@ def test_a_zone_that_it_may_have_flown_around_while_it_was_not_seen(
     mission = mission_of(root, tmp_path, zones=[square((a + c) / 2, (b + d) / 2, 5.0)])
     assert both(mission, log_of({1: circle}, *ALONE), tmp_path) == {1: "holds"}
     assert both(mission, log_of({1: circle}, *ALONE, gap=gap), tmp_path) == {1: "unknown"}
+
+
+def test_a_zone_that_appears_at_the_end(root: Path, tmp_path: Path) -> None:
+    """It is above the vehicle, and no leg begins in it."""
+    north, east, _ = circle(END_MS)
+    changes = [{"at_s": END_MS / 1000, "zone": square(north, east, 5.0)}]
+    mission = mission_of(root, tmp_path, changes=changes)
+    assert both(mission, log_of({1: circle}, *ALONE), tmp_path) == {1: "holds"}
 
 
 def test_a_zone_that_was_broken_before(root: Path, tmp_path: Path) -> None:
