@@ -132,6 +132,8 @@ def _without_link(one: Alone, mode: str, had: bool) -> Iterator[tuple[int, str]]
         yield one.time_ms, f"{one.mode} after a silence of {silent_ms} ms"
     elif one.mode != LINKED and not had:
         yield one.time_ms, f"{one.mode} is flown, and UxAS has it"
+    elif one.mode == LINKED and had and silent_ms > SILENT_MS:
+        yield one.time_ms, f"{one.mode} after a silence of {silent_ms} ms"
 
 
 def _kept(log: Log, vehicle: int, declared: list[Declared]) -> Iterator[tuple[int, str]]:

@@ -124,6 +124,9 @@ FLIES_ON = says("Finish", 40_000, Heard=9999)
         ((TAKEN, FLIES_ON, says("Linked", 50_000, Heard=49_900), gate("UxAS", 50_500)), GOOD),
         ((TAKEN, FLIES_ON, gate("UxAS", 49_950), says("Linked", 50_000, Heard=49_900)), GOOD),
         ((TAKEN, gate("UxAS", 20_000, 2), COMMAND, FLIES_ON), GOOD),
+        # what UxAS has counts as heard
+        ((TAKEN, FLIES_ON, gate("UxAS", 49_950), says("Linked", 50_000, Heard=9999)), GOOD),
+        ((TAKEN, FLIES_ON, says("Linked", 50_000, Heard=9999)), BAD),
         ((TAKEN, says("Finish", 40_000, Heard=10_000)), BAD),
         ((TAKEN, says("Over", 40_000, Heard=9999)), BAD),
         ((TAKEN, says("Finish", 40_000, Heard=9999, Chosen="Loiter")), BAD),
@@ -166,7 +169,9 @@ def test_the_row_tells_what_was_said(
 ) -> None:
     log = log_of({}, *said, end_ms=END_MS, outcome="failed")
     flight = Flown(mission, log, None)  # type: ignore[arg-type]
-    assert flight.verdicts()[ROW].note == note
+    found = flight.verdicts()[ROW]
+    assert found.note == note
+    assert bool(found.kernels) == bool(found.checks)
     assert flight.judged(tmp_path)[ROW] == GOOD
 
 
