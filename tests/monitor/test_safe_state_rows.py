@@ -164,7 +164,14 @@ def test_who_is_elsewhere_has_no_row(root: Path, tmp_path: Path) -> None:
     mission = mission_of(root, tmp_path, *others)
     flies = {1: circle, 2: circle, 3: stands(300, 1500, 0, 40_000), 4: circle}
     said = [one for n in (2, 3) for one in (gate("ICAROUS", 5000, n), says("Over", 20_000, n))]
-    assert both(mission, log_of(flies, *ALONE, *said, failed(2)), tmp_path) == {1: "holds"}
+    log = log_of(flies, *ALONE, *said, failed(2), failed(9))
+    assert both(mission, log, tmp_path) == {1: "holds"}
+    # vehicle 1 is seen later than the others
+    log = log_of(flies, *ALONE, *said, failed(2), gap=range(5000))
+    assert both(mission, log, tmp_path) == {1: "holds"}
+    # vehicle 3 stands beside all sites
+    log = log_of({**flies, 3: stands(1000, 1500, 0, 40_000)}, *ALONE, *said, failed(2))
+    assert both(mission, log, tmp_path) == {1: "holds", 3: "violated"}
     # with nobody but 2 and 3 in ICAROUS's hand nobody is in the safe state
     log = log_of(flies, *said, failed(2))
     assert both(mission, log, tmp_path) == dict.fromkeys(range(1, 5), "violated")
