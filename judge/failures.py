@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from cratous.judge.declared import AfterFailure, Declared
 from cratous.judge.ground import down
-from cratous.judge.log import Alone, Log
+from cratous.judge.log import Alone, Gate, Log
 from cratous.judge.lost_link import FINAL, LANDED, LINKED, follows, landing_faults, unseen
 from cratous.judge.mission import Mission
 from cratous.judge.tracks import Track
@@ -35,7 +35,9 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         subject, item = ("failed", str(vehicle)), f"what vehicle {vehicle} does after a failure"
         declared, said = log.declared.get(vehicle, []), log.alone.get(vehicle, [])
         place, track = down(mission, vehicle, flown.get(vehicle)), flown.get(vehicle)
-        faults = [*_declared(mission, asked, log, vehicle), *_flown(mission, asked, declared, said)]
+        owners = [g for g in log.gates if (g.vehicle, g.kind) == (vehicle, "state")]
+        faults = [*_declared(mission, asked, log, vehicle)]
+        faults += _flown(mission, asked, declared, said, owners)
         faults += _kept(log, vehicle, declared)
         if log.end_ms is not None:
             faults += landing_faults(mission, flown, vehicle, said, log.end_ms)
@@ -95,14 +97,19 @@ def _without_ms(hands: list[tuple[int, str]]) -> int | None:
 
 
 def _flown(
-    mission: Mission, asked: AfterFailure, declared: list[Declared], said: list[Alone]
+    mission: Mission,
+    asked: AfterFailure,
+    declared: list[Declared],
+    said: list[Alone],
+    owners: list[Gate],
 ) -> Iterator[tuple[int, str]]:
-    """Reports of what is flown that are impossible, or missing."""
+    """Reports of what is flown that are impossible, or missing. owners: who had the vehicle, by its gate."""
     at_ms, mode = (declared[0].time_ms if declared else None), LINKED
     begun = False
     for one in said:
         if at_ms is None or one.time_ms < at_ms:
-            yield from _without_link(mission, one, mode)
+            had = [gate.side for gate in owners if gate.time_ms <= one.time_ms]
+            yield from _without_link(mission, one, mode, had[-1:] == [ICAROUS])
             mode = one.mode
             continue
         # a failure begins what is flown anew
@@ -118,12 +125,19 @@ def _flown(
         yield at_ms, "nothing was flown from when the failure was declared"
 
 
-def _without_link(mission: Mission, one: Alone, mode: str) -> Iterator[tuple[int, str]]:
-    """Faults of what is flown before any failure: the known way, then a circle, without the link."""
+def _without_link(mission: Mission, one: Alone, mode: str, had: bool) -> Iterator[tuple[int, str]]:
+    """Faults of what is flown before any failure: the known way, then a circle, without the link.
+
+    had: whether ICAROUS had the vehicle.
+    """
     silent_ms = one.time_ms - one.heard_ms
     if one.chosen != FINISH or one.mode not in follows(mode, FINISH):
         yield one.time_ms, f"{one.mode} is flown, and no failure had been declared"
     elif one.mode != LINKED and silent_ms <= mission.lost_link_after_ms:
+        yield one.time_ms, f"{one.mode} after a silence of {silent_ms} ms"
+    elif one.mode != LINKED and not had:
+        yield one.time_ms, f"{one.mode} is flown, and UxAS has it"
+    elif one.mode == LINKED and had and silent_ms > mission.lost_link_after_ms:
         yield one.time_ms, f"{one.mode} after a silence of {silent_ms} ms"
 
 

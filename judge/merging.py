@@ -2,7 +2,7 @@
 
 Each stay of a vehicle in the entry zone, the closed disc about the fix, is one passage, at the first instant at
 which it is nearest to the fix. On a leg a + t v that is t = -a.v / |v|^2, clipped to the leg: a rational number,
-without a square root.
+without a square root. Where one of the two did not pass, nothing can be compared, and the row is unknown.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def rows(mission: Mission, flown: dict[int, Track]) -> Iterator[Row]:
     fix = mission.fix
     if fix is None:
         return
-    passed = {n: passages(fix, flown[n]) if n in flown else [] for n in sorted(fix.vehicles)}
+    passed = {n: passages(fix, flown[n]) for n in sorted(fix.vehicles)}
     for one, other in combinations(passed, 2):
         yield _row(fix, (one, other), passed, flown)
 
@@ -46,8 +46,9 @@ def _row(
         at, gap = min(near)
         note = f"{float(gap) / 1000:.2f} s after the other one; {note}"
         return Row("G1", subject, item, VIOLATED, note, int(at), len(gaps))
-    lacking = [f"no position of {n} was logged" for n in pair if n not in flown]
-    doubts = [*lacking, *(flown[n].doubt for n in pair if n in flown and flown[n].doubt)]
+    doubts = [flown[n].doubt for n in pair if flown[n].doubt]
+    if not gaps:
+        doubts.append("nothing to compare")
     if doubts:
         return Row("G1", subject, item, UNKNOWN, f"{doubts[0]}; {note}", None, len(gaps))
     return Row("G1", subject, item, HOLDS, note, None, len(gaps))

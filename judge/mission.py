@@ -250,6 +250,8 @@ def check(mission: Mission, data: Node) -> None:
         raise data["frame"].wrong("a latitude from -90 to 90")
     if mission.fix is not None and not mission.fix.vehicles <= mission.vehicles.keys():
         raise data["merging" if data.has("merging") else "daa"].wrong("vehicles that exist")
+    if not mission.instances <= mission.vehicles.keys():
+        raise data["instances"].wrong("vehicles that exist")
     known = {*mission.vehicles, *mission.tasks}
     named = [*mission.vehicle_said, *mission.task_said]
     strange = [n for n in named if n not in known]

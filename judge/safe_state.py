@@ -30,11 +30,12 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
     if not log.ends or log.ends[-1][1] != SAFE_STATE:
         return
     end_ms, there = log.ends[-1][0], sorted(mission.instances)
-    away = [v for v in there if _away(mission, log, v, flown.get(v))]
+    away = [v for v in there if _away(mission, log, v, flown[v])]
     for vehicle in away or there:
         subject, item = ("circle", str(vehicle)), f"circle of vehicle {vehicle} at the end"
+        track = flown[vehicle]
         since = _since_ms(log, vehicle)
-        states = _last(mission, flown.get(vehicle), end_ms)
+        states = track.states[track.from_index(end_ms - mission.safe_state_after_ms) :]
         reach_m = _reach_m(mission, vehicle, states)
         fault = ""
         if not away:
@@ -42,18 +43,18 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         elif since is None or end_ms - since < mission.safe_state_after_ms:
             fault = f"it was not said to circle for {mission.safe_state_after_ms / 1000:g} s when the flight ended"
         fault = fault or _apart(states, reach_m)
-        fault = fault or _broken(mission, flown.get(vehicle), end_ms)
+        fault = fault or _broken(mission, track, end_ms)
         if fault:
             yield Row("G5", subject, item, VIOLATED, fault, end_ms, len(states))
             continue
         far_m = _radius_m(states)
         note = f"within {far_m:.1f} m of one place; a circle of {reach_m:.1f} m is allowed"
-        doubt = _doubt(mission, flown.get(vehicle), end_ms)
+        doubt = _doubt(track, end_ms - mission.safe_state_after_ms)
         verdict = UNKNOWN if doubt or far_m > reach_m else HOLDS
         yield Row("G5", subject, item, verdict, doubt or note, None, len(states))
 
 
-def _away(mission: Mission, log: Log, vehicle: int, track: Track | None) -> bool:
+def _away(mission: Mission, log: Log, vehicle: int, track: Track) -> bool:
     """Whether ICAROUS had a vehicle at the end, or it circled, in the air and without a declared failure."""
     owners = [one.side for one in log.gates if (one.vehicle, one.kind) == (vehicle, "state")]
     failed = mission.after_failure is not None and vehicle in log.declared
@@ -75,23 +76,9 @@ def _since_ms(log: Log, vehicle: int) -> int | None:
     return since
 
 
-def _last(mission: Mission, track: Track | None, end_ms: int) -> list[State]:
-    """The states in the time that counts."""
-    return (
-        []
-        if track is None
-        else track.states[track.from_index(end_ms - mission.safe_state_after_ms) :]
-    )
-
-
-def _doubt(mission: Mission, track: Track | None, end_ms: int) -> str:
-    """Why the path in that time is not known; empty if it is."""
-    if track is None:
-        return "no position of it was logged"
-    return next(
-        (flaw.why for flaw in track.flaws if flaw.last_ms > end_ms - mission.safe_state_after_ms),
-        "",
-    )
+def _doubt(track: Track, from_ms: int) -> str:
+    """Why the path from a time on is not known; empty if it is."""
+    return next((flaw.why for flaw in track.flaws if flaw.last_ms > from_ms), "")
 
 
 def _reach_m(mission: Mission, vehicle: int, states: list[State]) -> float:
@@ -124,10 +111,8 @@ def _radius_m(states: list[State]) -> float:
     return max(math.dist(s[1:3], middle) for s in states)
 
 
-def _broken(mission: Mission, track: Track | None, end_ms: int) -> str:
+def _broken(mission: Mission, track: Track, end_ms: int) -> str:
     """The zone that the path breaks in that time, in words; empty if it keeps all."""
-    if track is None:
-        return ""
     for zone in mission.zones:
         fence, first = Fence(zone), max(zone.from_ms, end_ms - mission.safe_state_after_ms)
         if track.from_index(first) >= len(track.states) - (zone.from_ms > 0):

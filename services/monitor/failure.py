@@ -114,7 +114,8 @@ class FailureWatch(LinkLossWatch):
             for seen in (Seen(stopped, flies, without, since_ms, surprised, now_ms),)
         }
         after = Failure(kind, now_ms)
-        if after == told.failure or after not in may or told.failure.kind != NONE:
+        # after a failure no other one may follow, and the same one is not declared again
+        if after == told.failure or after not in may:
             told.wrong.append((now_ms, f"{name} is not what could be declared then"))
         if kind == BLOCKED and not told.blocked:
             told.wrong.append((now_ms, "blocked is declared, and no task of it was given up"))
@@ -153,7 +154,7 @@ class FailureWatch(LinkLossWatch):
             # whether the vehicle was out of ICAROUS's hand meanwhile, which counts as heard, is seen by its gate
             for heard_ms in ((body.Heard,) if _flies(told) else (body.Heard, now_ms))
         }
-        if self._merges_or_senses or mode not in may or int(body.Chosen) != FINISH:
+        if mode not in may or int(body.Chosen) != FINISH:
             told.wrong.append((now_ms, f"{body.Mode.name} is not what follows then"))
         elif not _flies(told) and mode != LINKED:
             told.wrong.append((now_ms, f"{body.Mode.name} is flown, and UxAS has it"))

@@ -2,7 +2,7 @@
 
 A vehicle passes the fix when it is nearest to it during a stay in the entry zone, once per stay. Between two states it
 flies straight. Passing times are rounded to milliseconds in both directions; if the verdict depends on the rounding,
-it is unknown.
+it is unknown, and so it is for a pair of which one did not pass: nothing was compared.
 """
 
 from __future__ import annotations
@@ -88,6 +88,7 @@ class MergeWatch:
         names = [self._words(one, ours), self._words(other, theirs)]
         doubts = (self._presence.unseen(n, (0, ending.at_ms), ending) for n in (one, other))
         doubt = next((text for text in doubts if text), "")
+        doubt = doubt or ("" if gaps else "no two passages to compare")
         if outcome is Outcome.HOLDS and doubt:
             outcome, names = Outcome.UNKNOWN, [doubt, *names]
         margin = None if least is None else (least[1] - least[0] - merging.separation_ms) / 1000

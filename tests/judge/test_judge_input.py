@@ -131,6 +131,7 @@ HUGE = 10**400
         lambda m: m["frame"].update(latitude_deg=91.0),
         lambda m: m["daa"]["well_clear"].update(dthr_m=-1.0),
         lambda m: m.update(relations=5),
+        lambda m: m.update(instances=[1, 99]),
     ],
 )  # fmt: skip
 def test_a_mission_that_does_not_fit(tmp_path: Path, capsys, edit) -> None:

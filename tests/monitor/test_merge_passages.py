@@ -10,15 +10,15 @@ from pathlib import Path
 import pytest
 
 from cratous.judge import merging as judge
-from cratous.judge.log import State
+from cratous.judge.log import Log, State
 from cratous.judge.mission_file import read
-from cratous.judge.tracks import Track
+from cratous.judge.tracks import tracks
 from cratous.services.flight.merging import DirectTalk
 from cratous.services.icarous.merger import FOLLOWS, Said, Wish
 from cratous.services.icarous.messages import Tells
 from cratous.services.loading import load
 from cratous.services.mission.merging import merging_of
-from cratous.services.monitor.merging import MergeWatch
+from cratous.services.monitor.merging import KERNELS, MergeWatch
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.samples import Sample
 from cratous.spec.mission import MergingDaa, Mission, Position
@@ -40,13 +40,27 @@ def far(now_ms: int) -> float:
     return 5000.0
 
 
+def turns_before(now_ms: int) -> float:
+    """It comes straight up to 1000 m before the fix, and goes back."""
+    return 1000 + abs(60_000 - now_ms) / 1000 * SPEED_M_S
+
+
 def there_and_back(now_ms: int) -> float:
     """It passes at 20 s, turns 1200 m behind the fix, and passes at 100 s."""
     return min(now_ms - 20_000, 100_000 - now_ms) / 1000 * SPEED_M_S
 
 
-def seen(root: Path, one: East, other: East) -> tuple[Verdict, str]:
-    """The monitor's verdict and the judge's on vehicles 1 and 2."""
+def turns_inside(now_ms: int) -> float:
+    """It comes up to 200 m before the fix at 60 s, and goes back."""
+    return 200 + abs(60_000 - now_ms) / 1000 * SPEED_M_S
+
+
+def hovers(now_ms: int) -> float:
+    return 100.0
+
+
+def seen(root: Path, one: East, other: East, gap: range = range(0)) -> tuple[Verdict, str]:
+    """The monitor's verdict and the judge's on vehicles 1 and 2. gap: when 2 was not seen [ms]."""
     mission = load(root / EXAMPLE)
     presence = Presence(STEP_MS)
     watch = MergeWatch(mission, presence)
@@ -57,6 +71,7 @@ def seen(root: Path, one: East, other: East) -> tuple[Verdict, str]:
         return {
             n: Sample(now_ms, Position(0.0, path(now_ms), 300.0), 0.0, True, 0)
             for n, path in paths.items()
+            if n != 2 or now_ms not in gap
         }
 
     for before, after in pairwise(map(instant, times)):
@@ -64,11 +79,17 @@ def seen(root: Path, one: East, other: East) -> tuple[Verdict, str]:
         watch.step(before, after)
     first = watch.verdicts(Ending(END_MS, True))[0]
     assert first.vehicles == (1, 2)
-    tracks = {
-        n: Track([State(t, 0.0, path(t), 300.0, 0.0, 0.0, 0.0) for t in times], list(times))
+    log = Log(root, ends=[(END_MS, "complete")])
+    log.states = {
+        n: [
+            State(t, 0.0, path(t), 300.0, 0.0, (path(t + STEP_MS) - path(t)) * 1000 / STEP_MS, 0.0)
+            for t in times
+            if n != 2 or t not in gap
+        ]
         for n, path in paths.items()
     }
-    return first, next(judge.rows(read(root / EXAMPLE), tracks)).verdict
+    judged = read(root / EXAMPLE)
+    return first, next(judge.rows(judged, tracks(judged, log))).verdict
 
 
 @pytest.mark.parametrize(
@@ -81,6 +102,12 @@ def seen(root: Path, one: East, other: East) -> tuple[Verdict, str]:
         (straight(60_000), there_and_back, Outcome.HOLDS, "holds", 2),
         (straight(90_000), there_and_back, Outcome.VIOLATED, "violated", 2),
         (straight(30_000), there_and_back, Outcome.VIOLATED, "violated", 2),
+        # where it turns it is nearest
+        (straight(80_000), turns_inside, Outcome.HOLDS, "holds", 1),
+        (straight(79_000), turns_inside, Outcome.VIOLATED, "violated", 1),
+        (straight(40_000), turns_inside, Outcome.HOLDS, "holds", 1),
+        (straight(41_000), turns_inside, Outcome.VIOLATED, "violated", 1),
+        (straight(30_000), hovers, Outcome.HOLDS, "holds", 1),
     ],
 )  # fmt: skip
 def test_each_stay_at_the_fix_is_one_passage(
@@ -88,14 +115,39 @@ def test_each_stay_at_the_fix_is_one_passage(
 ) -> None:
     verdict, by_judge = seen(root, one, other)
     assert (verdict.outcome, by_judge) == (outcome, judged)
-    assert verdict.checks == passages
+    assert (verdict.checks, verdict.unit) == (passages, "s")
+    assert verdict.kernels == KERNELS
+    assert (verdict.margin or 0) >= 0 if judged == "holds" else (verdict.margin or 0) < 0
 
 
-def test_a_pair_that_does_not_pass_shows_nothing(root: Path) -> None:
-    """With no check, the row is listed as not shown."""
-    verdict, judged = seen(root, straight(30_000), far)
-    assert (verdict.outcome, judged) == (Outcome.HOLDS, "holds")
+@pytest.mark.parametrize(
+    ("other", "gap", "expected"),
+    [
+        (straight(60_000), range(45_000, 48_000), "unknown"),
+        (straight(60_000), range(59_000, 62_000), "unknown"),
+        (straight(60_000), range(45_000), "unknown"),
+        (straight(40_000), range(100_000, 105_000), "violated"),
+    ],
+)
+def test_what_was_not_seen_shows_nothing(
+    root: Path, other: East, gap: range, expected: str
+) -> None:
+    verdict, judged = seen(root, straight(30_000), other, gap)
+    assert (verdict.outcome.value, judged) == (expected, expected)
+    assert verdict.note.startswith("aircraft 2 was not observed") == (expected == "unknown")
+
+
+@pytest.mark.parametrize("other", [far, turns_before])
+@pytest.mark.parametrize(("one", "passed"), [(straight(30_000), True), (far, False)])
+def test_a_pair_of_which_one_does_not_pass_is_unknown(
+    root: Path, one: East, passed: bool, other: East
+) -> None:
+    """It held with 0 checks, also where neither passed."""
+    verdict, judged = seen(root, one, other)
+    assert (verdict.outcome, judged) == (Outcome.UNKNOWN, "unknown")
     assert (verdict.checks, verdict.kernels, verdict.margin) == (0, (), None)
+    assert verdict.note.startswith("no two passages to compare; ")
+    assert ("vehicle 1 did not pass" in verdict.note) is not passed
     assert "vehicle 2 did not pass" in verdict.note
 
 
