@@ -41,8 +41,7 @@ ALWAYS_MS = 2**40
 def lost_link(mission: Mission, vehicle_id: int) -> LostLink | None:
     """The lost-link behaviour for one vehicle: that of the mission, else the one of a vehicle in ICAROUS's hand.
 
-    None where the mission sets none and has sensors or a merge fix: courses are not permitted against sensed tracks,
-    nor in the turns of a merge.
+    None where the mission sets none and has sensors or a merge fix: with these it is flown only if it is asked for.
     """
     loss = mission.link_loss
     if loss is None:

@@ -12,7 +12,7 @@ from cratous.core.permit.remainder import zones_permit
 from cratous.services.loading.checks import Finding, as_errors
 from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import Document
-from cratous.services.mission.landing import BRAKING_M_S2, TOUCHES_OFF_BEATS, sites_of
+from cratous.services.mission.landing import BRAKING_M_S2, sites_of, touches_off_m
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Position
 from cratous.spec.mission.link_loss import LandingSite
@@ -84,7 +84,6 @@ def ground_problems(mission: Mission) -> Iterator[Finding]:
     """
     yield from _heights(mission)
     yield from _overlaps(mission)
-    beat_s = mission.simulation.heartbeat_ms / 1000
     guarded = [mission.vehicle(number) for number in mission.instances]
     for k, site in enumerate(sites_of(mission)):
         place = Position(site.north_m, site.east_m, site.ground_m)
@@ -100,7 +99,7 @@ def ground_problems(mission: Mission) -> Iterator[Finding]:
                 )
         for vehicle in guarded:
             speed = vehicle.min_speed_m_s
-            off_m = TOUCHES_OFF_BEATS * speed * beat_s
+            off_m = touches_off_m(mission, vehicle)
             if not roll_fits(site.radius_m, speed, BRAKING_M_S2, off_m):
                 item, least_m = f"{SECTION}[{k}].radius_m", speed * speed / (4 * BRAKING_M_S2)
                 yield Finding(

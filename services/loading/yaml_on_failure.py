@@ -14,7 +14,6 @@ from cratous.spec.mission.on_failure import AfterFailure, Failed, OnFailure
 SECTION = "on_failure"
 BESIDE = {
     "link_loss": "what is flown without the link is not combined with what is flown after a failure",
-    "sensing": "what is flown after a failure is not permitted against sensed tracks",
     "merging": "a vehicle that acts by itself after a failure keeps no slot",
 }
 

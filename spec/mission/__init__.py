@@ -1,9 +1,8 @@
 """What a mission is: vehicles, tasks, zones, relations and traffic, as plain frozen data.
 
-Everything inside is SI in ONE local tangent frame per mission: north and east in metres from the
-frame's origin, altitude in metres above mean sea level (MSL), headings in radians clockwise from
-north, times in integer milliseconds after mission start (the instant at which the automation
-response is accepted). Degrees, feet and AGL altitudes exist only in the loaders.
+Everything inside is SI in ONE local tangent frame per mission: north and east in metres from the frame's origin,
+altitude in metres above mean sea level (MSL), headings in radians clockwise from north, times in integer milliseconds
+after mission start (when the automation response is accepted). Degrees, feet and AGL altitudes exist only in loaders.
 """
 
 from __future__ import annotations
@@ -100,9 +99,7 @@ class TaskKind(StrEnum):
     """A task known only from the messages of an external service; not in mission files."""
 
 
-SEARCHES = (
-    TaskKind.LINE_SEARCH, TaskKind.POINT_SEARCH, TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH,
-)  # fmt: skip
+SEARCHES = (TaskKind.LINE_SEARCH, TaskKind.POINT_SEARCH, TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH)  # fmt: skip
 """The kinds served by camera coverage."""
 AREAS = (TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH)
 """The kinds for which an entire area has to be seen."""
@@ -255,9 +252,8 @@ class Daa:
     @property
     def looks_first(self) -> Resolution:
         """The kind of manoeuvre searched for first; other kinds are used only if it yields none."""
-        if isinstance(self, OrderedDaa | OrderedSensedDaa):
-            return self.resolution
-        return Resolution.HEADING
+        ordered = isinstance(self, OrderedDaa | OrderedSensedDaa)
+        return self.resolution if ordered else Resolution.HEADING
 
 
 @dataclass(frozen=True)
@@ -323,6 +319,16 @@ class FailureDaa(OrderedDaa):
 
 
 @dataclass(frozen=True)
+class CombinedDaa(OrderedDaa):
+    """Detect and avoid in a mission that specifies more than one of these; None: not specified."""
+
+    sensing: Sensing | None = None
+    link_loss: LinkLoss | None = None
+    merging: Merging | None = None
+    on_failure: OnFailure | None = None
+
+
+@dataclass(frozen=True)
 class Change:
     """A change that becomes known in flight; `kind` is one of those of `spec.mission.changes`."""
 
@@ -365,12 +371,12 @@ class Mission:
     @property
     def sensing(self) -> Sensing | None:
         """The sensors of its ICAROUS instances; None: they get the true states."""
-        return self.daa.sensing if isinstance(self.daa, SensedDaa) else None
+        return self.daa.sensing if isinstance(self.daa, SensedDaa | CombinedDaa) else None
 
     @property
     def link_loss(self) -> LinkLoss | None:
         """What is flown while UxAS is not heard; None: not specified."""
-        return self.daa.link_loss if isinstance(self.daa, LinkLossDaa) else None
+        return self.daa.link_loss if isinstance(self.daa, LinkLossDaa | CombinedDaa) else None
 
     def vehicle(self, vehicle_id: int) -> Vehicle:
         """The vehicle with this id; KeyError if there is none."""
