@@ -216,7 +216,10 @@ def test_who_stands_on_the_ground_is_seen_by_no_sensor(root: Path, tmp_path: Pat
     """Both land, one after the other: once the first is down the second has no track of it."""
     data = yaml.safe_load((root / "tests/missions/on_failure.yaml").read_text())
     other = {**data["vehicles"][0], "id": 2, "position": {"north_m": -900, "east_m": 900, "alt_m": 360}}  # fmt: skip
-    sites = [*LARGE, {"name": "far", "position": {"north_m": -1500, "east_m": 900}, "radius_m": 150}]
+    sites = [
+        *LARGE,
+        {"name": "far", "position": {"north_m": -1500, "east_m": 900}, "radius_m": 150},
+    ]
     sections = {"vehicles": [data["vehicles"][0], other], "landing_sites": sites}
     after = {"choice": "land"}
     path = mission_file(root, tmp_path, on_failure=after, sensing=SENSORS, **sections)
