@@ -35,7 +35,7 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         subject, item = ("failed", str(vehicle)), f"what vehicle {vehicle} does after a failure"
         declared, said = log.declared.get(vehicle, []), log.alone.get(vehicle, [])
         place, track = down(mission, vehicle, flown.get(vehicle)), flown.get(vehicle)
-        faults = [*_declared(mission, asked, log, vehicle), *_flown(asked, declared, said)]
+        faults = [*_declared(mission, asked, log, vehicle), *_flown(mission, asked, declared, said)]
         faults += _kept(log, vehicle, declared)
         if log.end_ms is not None:
             faults += landing_faults(mission, flown, vehicle, said, log.end_ms)
@@ -95,14 +95,17 @@ def _without_ms(hands: list[tuple[int, str]]) -> int | None:
 
 
 def _flown(
-    asked: AfterFailure, declared: list[Declared], said: list[Alone]
+    mission: Mission, asked: AfterFailure, declared: list[Declared], said: list[Alone]
 ) -> Iterator[tuple[int, str]]:
-    """Reports of what is flown that are impossible, or missing."""
+    """Reports of what is flown that are impossible, or missing. The mission's procedure without the link has a row of
+    its own.
+    """
     at_ms, mode = (declared[0].time_ms if declared else None), LINKED
     begun = False
     for one in said:
         if at_ms is None or one.time_ms < at_ms:
-            yield from _without_link(one, mode)
+            if mission.without_link is None:
+                yield from _without_link(one, mode)
             mode = one.mode
             continue
         # a failure begins what is flown anew

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cratous.core.authority.link_loss import LAND
 from cratous.core.avoidance.manoeuvre import Motion
 from cratous.core.avoidance.prediction import buffered
 from cratous.core.avoidance.resolution import Scene
@@ -40,11 +41,10 @@ def require_reachable(mission: Mission) -> None:
         return
     for number in mission.instances:
         after = after_failure(mission, number)
-        plan = lost_link(mission, number) if after is None else after.flies
-        if plan is None:
-            continue
-        why = _why_not(mission, mission.vehicle(number), plan)
-        if why:
+        plans = (lost_link(mission, number), None if after is None else after.flies)
+        lands = [plan for plan in plans if plan is not None and plan.choice == LAND]
+        found = (_why_not(mission, mission.vehicle(number), plan) for plan in lands)
+        if why := next(filter(None, found), None):
             raise BadInput(
                 f"vehicle {number} can land nowhere",
                 where=mission.source,

@@ -71,7 +71,7 @@ def heartbeat(
 ) -> tuple[State, tuple[Fails | WithoutLink, ...]]:
     """The state with the mode and course for this heartbeat, and what to report."""
     state, said = _declared(config, state, sensed)
-    plan, now_ms = config.alone(state.failing.declared), sensed.now_ms
+    plan, now_ms = config.alone(state.failing.failure), sensed.now_ms
     if plan is None:
         return state, said
     before, tried = state.no_link, Tried(None)
@@ -166,7 +166,7 @@ def flown(
     """The manoeuvre to fly without the link: along the course, or by avoidance if no course is permitted; on
     the ground none.
     """
-    plan = config.alone(state.failing.declared)
+    plan = config.alone(state.failing.failure)
     course, goal = state.no_link.course, plan.goal if plan else None
     if state.no_link.loss.mode == LANDED:
         stands = Choice("heading", sensed.motion.heading_rad, 0.0, 0.0, 0.0, True, None)

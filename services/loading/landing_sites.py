@@ -19,6 +19,8 @@ from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.on_failure import AfterFailure
 
 SECTION = "landing_sites"
+LANDING_SECTIONS = ("link_loss", "on_failure")
+LANDS = (AfterFailure.LAND.value, AfterFailure.DITCH.value)
 
 
 def landing_sites(document: Document, places: Places) -> tuple[LandingSite, ...]:
@@ -33,19 +35,15 @@ def landing_sites(document: Document, places: Places) -> tuple[LandingSite, ...]
 
 def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterator[BadInput]:
     """Problems with landing sites: unused ones, duplicate names, and landings that name an unknown site."""
-    section = "on_failure" if "on_failure" in document.data else "link_loss"
-    loss, names = document.data.get(section, {}), [site.name for site in sites]
-    ditches = loss.get("choice") == AfterFailure.DITCH.value
-    lands = ditches or loss.get("choice") == AfterFailure.LAND.value
-    asked = [site.name for site in sites if site.ditch] if ditches else names
-    told = ", ".join(asked) or "none"
-    if sites and not lands:
+    asked = {one: document.data[one] for one in LANDING_SECTIONS if one in document.data}
+    names = [site.name for site in sites]
+    if sites and not any(loss["choice"] in LANDS for loss in asked.values()):
         yield BadInput(
             "no vehicle lands at these sites",
             where=document.where((SECTION,)),
             item=SECTION,
             expected="link_loss or on_failure with choice land beside them",
-            got=loss.get("choice", "none"),
+            got=", ".join(loss["choice"] for loss in asked.values()) or "none",
         )
     for k, name in enumerate(names):
         if name in names[:k]:
@@ -56,6 +54,15 @@ def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterato
                 expected="names that differ",
                 got=name,
             )
+    for section in asked:
+        yield from _named(document, section, sites)
+
+
+def _named(document: Document, section: str, sites: tuple[LandingSite, ...]) -> Iterator[BadInput]:
+    """Problems with the site that a section names."""
+    loss = document.data[section]
+    ditches, lands = loss["choice"] == AfterFailure.DITCH.value, loss["choice"] in LANDS
+    asked = [site.name for site in sites if site.ditch or not ditches]
     site = loss.get("site")
     if site is not None and not lands:
         yield BadInput(
@@ -72,7 +79,7 @@ def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterato
             f"there is no such {what}" if site else f"there is no {what}",
             where=document.where((section, key)),
             item=f"{section}.{key}",
-            expected=f"one of landing_sites: {told}",
+            expected=f"one of landing_sites: {', '.join(asked) or 'none'}",
             got=site or "none",
         )
 

@@ -55,12 +55,14 @@ def words(loss: LinkLoss) -> str:
 
 def place_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
     """Faults of the place to return to: a zone present at the start, or the ground, prevents loitering there."""
-    to, section = None if mission.link_loss is None else mission.link_loss.to, "link_loss"
     after = on_failure_of(mission)
+    if mission.link_loss is not None and mission.link_loss.to is not None:
+        yield from _place(mission, where, mission.link_loss.to, "link_loss")
     if after is not None and after.to is not None:
-        to, section = Position(*after.to), "on_failure"
-    if to is None:
-        return
+        yield from _place(mission, where, Position(*after.to), "on_failure")
+
+
+def _place(mission: Mission, where: Where, to: Position, section: str) -> Iterator[BadInput]:
     item = f"{section}.to.position"
 
     def bad(what: str, expected: str, got: str) -> BadInput:

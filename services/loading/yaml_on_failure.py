@@ -13,7 +13,6 @@ from cratous.spec.mission.on_failure import AfterFailure, Failed, OnFailure
 
 SECTION = "on_failure"
 BESIDE = {
-    "link_loss": "what is flown without the link is not combined with what is flown after a failure",
     "merging": "a vehicle that acts by itself after a failure keeps no slot",
 }
 

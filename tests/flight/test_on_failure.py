@@ -308,7 +308,6 @@ LAND = {"choice": "land"}
 @pytest.mark.parametrize(
     ("sections", "said"),
     [
-        ({"link_loss": {"choice": "loiter"}}, "on_failure: what is flown without the link is not combined"),
         ({"sensing": SENSORS}, "landing_sites[0].radius_m: vehicle 1 does not come to a stand on field; expected at least 95.62 m"),
         ({"bridge": {"instances": 0}}, "on_failure: nobody would act by it"),
         ({"landing_sites": None}, "on_failure.site: there is no such landing site; expected one of landing_sites: none"),
