@@ -138,6 +138,7 @@ class Instance:
             )
             state = permits.resumed(self.config, state, sensed, in_turn)
         state = replace(state, cycle=cycle, courses=now, ways=ways, beats=state.beats + 1)
+        state, fails = link_loss.declared(self.config, state, sensed)
         state, up = take_off.heartbeat(self.config, state, sensed)
         state, lost = link_loss.heartbeat(self.config, state, sensed)
         state, merges = merging.heartbeat(self.config, state, sensed)
@@ -149,7 +150,15 @@ class Instance:
         if self.config.on_failure is not None:
             state = replace(state, failing=noted(state.failing, sensed, out))
         state, hears = self._hears(state, sensed.now_ms)
-        return state, (*up, *lost, *merges, *hears, *out, messages.Up(self.config.vehicle_id, beat))
+        return state, (
+            *fails,
+            *up,
+            *lost,
+            *merges,
+            *hears,
+            *out,
+            messages.Up(self.config.vehicle_id, beat),
+        )
 
     def _hears(self, state: State, now_ms: int) -> tuple[State, tuple[messages.Hears, ...]]:
         """A change of whether UxAS is heard, for the record; not reported here if the mission sets a lost-link

@@ -55,11 +55,3 @@ def _problems(document: Document, after: OnFailure, instances: int) -> Iterator[
         yield bad((), "nobody would act by it", "a vehicle with an ICAROUS instance", "none")
     if after.to is not None and after.choice is not AfterFailure.RETURN:
         yield bad(("to",), "nothing returns there", "choice return", after.choice.value)
-    for k, vehicle in enumerate(document.data["vehicles"]):
-        if vehicle.get("start") == "ground":
-            item = f"vehicles[{k}].start"
-            yield BadInput(
-                "a vehicle that has not taken off cannot act by itself after a failure",
-                where=document.where(("vehicles", k, "start")), item=item,
-                expected="vehicles that start in the air", got="ground",
-            )  # fmt: skip
