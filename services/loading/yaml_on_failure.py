@@ -12,9 +12,6 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission.on_failure import AfterFailure, Failed, OnFailure
 
 SECTION = "on_failure"
-BESIDE = {
-    "merging": "a vehicle that acts by itself after a failure keeps no slot",
-}
 
 
 def yaml_on_failure(document: Document, places: Places, instances: int) -> OnFailure | None:
@@ -48,9 +45,6 @@ def _problems(document: Document, after: OnFailure, instances: int) -> Iterator[
         where = document.where((SECTION, *key))
         return BadInput(what, where=where, item=item, expected=expected, got=got)
 
-    for other, what in BESIDE.items():
-        if other in document.data:
-            yield bad((), what, f"no section {other} beside it", "both")
     if not instances:
         yield bad((), "nobody would act by it", "a vehicle with an ICAROUS instance", "none")
     if after.to is not None and after.choice is not AfterFailure.RETURN:
