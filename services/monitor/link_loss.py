@@ -173,8 +173,9 @@ class LinkLossWatch:
 
     def _missed(self, told: Told, now_ms: int) -> None:
         """Record a fault if a connection has been down for so long that a report was due."""
-        known = told.down_ms is not None and told.failed_ms is None
-        if not known or told.loss.mode != LINKED or self._asked is None:
+        if told.down_ms is None or told.loss.mode != LINKED or self._asked is None:
+            return
+        if told.failed_ms is not None:
             return
         bound_ms = self._asked.after_ms + LATEST_BEATS * self._beat_ms
         since = told.loss.since_ms

@@ -48,9 +48,8 @@ class Frame:
 
 @dataclass(frozen=True)
 class Vehicle:
-    """One aircraft. `protected` vehicles get an ICAROUS instance and the guarantees G1 to G5.
-
-    power_w: power drawn in flight [W], None if not known.
+    """One aircraft. `protected` ones get an ICAROUS instance and the guarantees G1 to G5. power_w: drawn in flight [W],
+    None if not known.
     """
 
     id: int
@@ -252,8 +251,9 @@ class Daa:
     @property
     def looks_first(self) -> Resolution:
         """The kind of manoeuvre searched for first; other kinds are used only if it yields none."""
-        ordered = isinstance(self, OrderedDaa | OrderedSensedDaa)
-        return self.resolution if ordered else Resolution.HEADING
+        if isinstance(self, OrderedDaa | OrderedSensedDaa):
+            return self.resolution
+        return Resolution.HEADING
 
 
 @dataclass(frozen=True)

@@ -263,7 +263,7 @@ def test_vehicles_that_cannot_wait_or_that_nobody_flies_are_refused(
         ({"bridge": {"instances": 1}}, "nobody merges it"),
         ({"vehicles": [{**data["vehicles"][0], "start": "ground"}, data["vehicles"][1]]}, "it starts on the ground"),
         ({"link_loss": {"choice": "loiter"}}, "keeps no slot"),
-        ({"sensing": {"sensors": [{"kind": "adsb", "horizontal_m": 5, "vertical_m": 5, "velocity_m_s": 1}]}}, "sensed tracks"),
+        ({"sensing": {"sensors": [{"kind": "adsb", "horizontal_m": 5, "vertical_m": 5, "velocity_m_s": 1}]}}, "miss their slots"),
     ):  # fmt: skip
         path.write_text(yaml.safe_dump({**data, **change}))
         with pytest.raises(BadInput, match=what):
