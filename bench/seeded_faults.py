@@ -30,7 +30,7 @@ from cratous.services.campaign.outcomes import Row, row_of
 from cratous.services.campaign.runs import Run, runs_of
 from cratous.services.campaign.search import BATCH, Search, fails
 from cratous.services.cli.encounter_flight import fly_run
-from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR
+from cratous.services.loading.yaml_daa import DEFAULT_WELL_CLEAR
 
 CAMPAIGNS = {
     "separation": (

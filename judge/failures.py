@@ -103,13 +103,16 @@ def _flown(
     said: list[Alone],
     owners: list[Gate],
 ) -> Iterator[tuple[int, str]]:
-    """Reports of what is flown that are impossible, or missing. owners: who had the vehicle, by its gate."""
+    """Reports of what is flown that are impossible, or missing. The mission's procedure without the link has a row of
+    its own. owners: who had the vehicle, by its gate.
+    """
     at_ms, mode = (declared[0].time_ms if declared else None), LINKED
     begun = False
     for one in said:
         if at_ms is None or one.time_ms < at_ms:
-            had = [gate.side for gate in owners if gate.time_ms <= one.time_ms]
-            yield from _without_link(mission, one, mode, had[-1:] == [ICAROUS])
+            if mission.without_link is None:
+                had = [gate.side for gate in owners if gate.time_ms <= one.time_ms]
+                yield from _without_link(mission, one, mode, had[-1:] == [ICAROUS])
             mode = one.mode
             continue
         # a failure begins what is flown anew

@@ -29,13 +29,19 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
     for vehicle in sorted(mission.instances):
         subject, item = ("alone", str(vehicle)), f"what vehicle {vehicle} flies without the link"
         said, place = log.alone.get(vehicle, []), down(mission, vehicle, flown.get(vehicle))
+        failed_ms = _failed_ms(mission, log, vehicle)
+        if failed_ms is not None:
+            said = [one for one in said if one.time_ms < failed_ms]
         faults = [*_faults(mission, asked, said), *_missed(mission, asked, log, vehicle, said)]
-        if log.end_ms is not None:
+        if failed_ms is not None:
+            pass  # how it ends is judged in the row on the failure
+        elif log.end_ms is not None:
             faults += landing_faults(mission, flown, vehicle, said, log.end_ms)
         else:
             faults += _taken(mission, flown, vehicle, place)
         note = ", ".join(f"{one.mode} from {seconds(one.time_ms)}" for one in said)
         note = note or "it was never said to be without the link"
+        note += "" if failed_ms is None else f", a failure declared at {seconds(failed_ms)}"
         note += f"; it {place.words()}" if place else ""
         if faults:
             at, text = min(faults)
@@ -50,6 +56,12 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
             yield Row("G5", subject, item, UNKNOWN, note, None, len(said))
         else:
             yield Row("G5", subject, item, HOLDS, note, None, len(said))
+
+
+def _failed_ms(mission: Mission, log: Log, vehicle: int) -> int | None:
+    """When a vehicle declared a failure [ms], from which on it flies something else; None if it did not."""
+    said = log.declared.get(vehicle, []) if mission.after_failure is not None else []
+    return said[0].time_ms if said else None
 
 
 def unseen(track: Track | None) -> str:
@@ -98,7 +110,9 @@ def _missed(
     """Connections that had been down for too long without a report."""
     since: int | None = None
     changes = [(s.time_ms, s.alive, s.lost) for s in log.bridges.get(vehicle, [])]
-    changes += [] if log.end_ms is None else [(log.end_ms, True, False)]
+    end_ms = _failed_ms(mission, log, vehicle) or log.end_ms
+    changes = [one for one in changes if end_ms is None or one[0] <= end_ms]
+    changes += [] if end_ms is None else [(end_ms, True, False)]
     for at_ms, alive, lost in changes:
         if not alive:
             since = at_ms if since is None and lost else since

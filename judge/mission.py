@@ -72,7 +72,6 @@ class Task:
 @dataclass(frozen=True)
 class Zone:
     """A polygon (north, east) between two altitudes, known from an instant on, and until one if it ends.
-
     padding_m enlarges a keep-out and reduces a keep-in, by distance."""
 
     id: int
@@ -98,8 +97,7 @@ class Traffic(NamedTuple):
 
 
 class WithoutLink(NamedTuple):
-    """The lost-link procedure, named as in the log; the silence that starts it; whether bridge lines may be lost or
-    late while a connection is up."""
+    """The lost-link procedure, as in the log; the silence that starts it; whether lines fail while a link is up."""
 
     choice: str
     after_ms: int
@@ -254,8 +252,7 @@ def check(mission: Mission, data: Node) -> None:
         raise data["instances"].wrong("vehicles that exist")
     known = {*mission.vehicles, *mission.tasks}
     named = [*mission.vehicle_said, *mission.task_said]
-    strange = [n for n in named if n not in known]
-    if strange:
+    if strange := [n for n in named if n not in known]:
         raise data["changes"].wrong(f"vehicles and tasks that exist, not {strange[0]}")
 
 
@@ -393,8 +390,8 @@ def check_task(task: Task, data: Node) -> None:
         refuse_bad_ring(task.points, data.get("points"))
     if task.kind == "pattern_search":
         data["pattern"].one_of("spiral", "square", "sector", "sweep")
-        if task.extent_m <= 0:
-            raise data["extent_m"].wrong("more than 0")
+    if task.kind == "pattern_search" and task.extent_m <= 0:
+        raise data["extent_m"].wrong("more than 0")
 
 
 def _traffic(data: Node) -> Traffic:

@@ -76,6 +76,20 @@ def heard_by(failure: Failure, heard: int) -> int:
     return -4611686018427387904
 
 
+@kernel(
+    implements="authority.failure.is_procedure",
+    restates="which of two procedures is flown; that the loss of the link declares no failure, and that a failure ends the"
+    " procedure without the link, is proved of it",
+)
+def procedure(failure: Failure, without_link: int, after_failure: int) -> int:
+    """What is flown by itself: without_link, the mission's choice without the link, until a failure is declared, then
+    after_failure, its choice after that, for good.
+    """
+    if failure.kind == 0:
+        return without_link
+    return after_failure
+
+
 @kernel(implements="authority.failure.is_begun_anew")
 def loss_declared(before: Failure, after: Failure, loss: Loss) -> Loss:
     """What the vehicle flies by itself at the beginning of a heartbeat. before, after: the failure around it."""

@@ -36,7 +36,8 @@ def not_told(mission: Mission, told: bool) -> str:
 def coarse(mission: Mission) -> str:
     """Why a silence may not have been reported, "" if each is: with a lost-link procedure only long ones are."""
     loss = mission.link_loss
-    if loss is None or in_time(0, loss.after_ms, HEARD_MS):
+    told = on_failure_of(mission) is not None  # beside it each silence is reported (`UxasHeard`)
+    if loss is None or told or in_time(0, loss.after_ms, HEARD_MS):
         return ""
     return f"a silence of up to {loss.after_ms / 1000:g} s is not told (link_loss)"
 

@@ -64,7 +64,9 @@ def _rows(report: Data) -> list[str]:
             found.append(f"{number} rows of {name} on the same: {item}")
     *limits, of_frame = report["limits"] or [""]
     mission = report["mission"]
-    of_states = said_of_states(bool(mission["instances"]), "sensing" in mission["daa"])
+    of_states = said_of_states(
+        bool(mission["instances"]), mission["daa"].get("sensing") is not None
+    )
     if limits != [*LIMITS, *of_states] or not OF_FRAME.fullmatch(of_frame):
         found.append("its limits are not those that every report has")
     return found

@@ -72,7 +72,8 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
         if zone["kind"] == "keep_out":
             shown += [(corner[0], corner[1]) for corner in zone["vertices"]]
     daa = mission.get("daa", {})
-    sites = (daa.get("link_loss") or daa.get("on_failure") or {}).get("sites", ())
+    lands = [daa.get(section) or {} for section in ("on_failure", "link_loss")]
+    sites = next((one["sites"] for one in lands if one.get("sites")), ())
     shown += [(site["north_m"], site["east_m"]) for site in sites]
     merging = mission.get("daa", {}).get("merging")
     fixes = [] if merging is None else [{**merging, "radius_m": merging["entry_m"]}]

@@ -7,7 +7,7 @@ from dataclasses import MISSING, fields
 from math import degrees
 from typing import Any, NamedTuple
 
-from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR
+from cratous.services.loading.yaml_daa import DEFAULT_WELL_CLEAR
 from cratous.services.mission.frames import Projection, compass
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import (

@@ -162,9 +162,13 @@ def advance(state: AirState, dt_s: float) -> AirState:
 
 
 def touching_down(state: AirState, ground_m: float, dt_s: float) -> AirState:
-    """The state with its descent limited so that a step of dt_s [s] ends no lower than ground_m [m]."""
-    least = (ground_m - state.position.alt_m) / dt_s
-    return state._replace(climb_m_s=max(state.climb_m_s, least))
+    """The state with its descent limited so that a step of dt_s [s] ends no lower than ground_m [m], and at it if it ends
+    so near that it counts as on the ground.
+    """
+    height_m = state.position.alt_m - ground_m
+    if is_down(height_m + state.climb_m_s * dt_s):
+        return state._replace(climb_m_s=-height_m / dt_s)
+    return state
 
 
 def rolling(state: AirState, braking_m_s2: float, dt_s: float) -> AirState:

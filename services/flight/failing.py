@@ -7,14 +7,16 @@ flown what the mission chooses.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 from cratous.core.authority.link_loss import LOITER, OVER
 from cratous.core.authority.timeliness import lasted
+from cratous.services.flight.dynamics import on_its_ground, stands_at_start
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.messages import Stop
 from cratous.services.icarous.messages import Fails, WithoutLink
-from cratous.services.mission.landing import on_failure_of
+from cratous.services.mission.landing import BRAKING_M_S2, on_failure_of
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS
 from cratous.spec.mission import Change
 from cratous.spec.mission.changes import VEHICLE_FAILED
@@ -70,7 +72,12 @@ def flies(state: State, message: WithoutLink) -> State:
     of a permitted way counts as the last after five look-aheads.
     """
     until_ms = NOT_YET_MS
-    if message.mode == OVER or message.mode == message.chosen == LOITER:
+    chain = state.find(message.vehicle_id)
+    if chain is not None and on_its_ground(chain.vehicle, state.air(message.vehicle_id)):
+        # it breaks off its roll, if it rolls, and stands
+        stops_s = state.air(message.vehicle_id).speed_m_s / BRAKING_M_S2
+        until_ms = message.now_ms + math.ceil(1000 * stops_s)
+    elif message.mode == OVER or message.mode == message.chosen == LOITER:
         until_ms = message.now_ms
     elif message.mode == LOITER:
         until_ms = message.now_ms + round(1000 * LONGEST_LOOKAHEADS * state.mission.daa.lookahead_s)
@@ -100,4 +107,9 @@ def at_the_end(config: Config, state: State) -> State:
     """The state when the mission is about to end incomplete: the vehicles that are stopped first, if any are."""
     if not asks(state, Failed.ENDED):
         return state
-    return stop(state, (vid for vid in config.instances if state.find(vid) is not None))
+    there = {vid: state.find(vid) for vid in config.instances}
+    # one that has not taken off stands there already
+    return stop(state, (
+        vid for vid, chain in there.items()
+        if chain is not None and not stands_at_start(chain.vehicle, state.air(vid))
+    ))  # fmt: skip

@@ -118,7 +118,7 @@ def linked(config: Config, state: State, message: HeardAgain, out: Out) -> State
     """
     vid, now_ms, by_uxas = message
     chain = state.find(vid)
-    if chain is None or not chain.unlinked:
+    if chain is None or not chain.unlinked or vid in dict(state.declared):
         return state
     chain = replace(chain, unlinked=False, leg=chain.leg._replace(taken_ms=now_ms))
     if not by_uxas:

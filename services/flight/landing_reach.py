@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cratous.core.avoidance.drift import NONE
+from cratous.core.authority.link_loss import LAND
 from cratous.core.avoidance.manoeuvre import Motion
 from cratous.core.avoidance.prediction import buffered
 from cratous.core.avoidance.resolution import Scene
@@ -26,7 +26,7 @@ from cratous.services.icarous.lost_link import LostLink
 from cratous.services.icarous.messages import Sensed
 from cratous.services.loading.polygons import hard_zones
 from cratous.services.mission.ground import floor_of
-from cratous.services.mission.landing import sites_of
+from cratous.services.mission.landing import own_bounds, sites_of
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Vehicle
 
@@ -41,11 +41,10 @@ def require_reachable(mission: Mission) -> None:
         return
     for number in mission.instances:
         after = after_failure(mission, number)
-        plan = lost_link(mission, number) if after is None else after.flies
-        if plan is None:
-            continue
-        why = _why_not(mission, mission.vehicle(number), plan)
-        if why:
+        plans = (lost_link(mission, number), None if after is None else after.flies)
+        lands = [plan for plan in plans if plan is not None and plan.choice == LAND]
+        found = (_why_not(mission, mission.vehicle(number), plan) for plan in lands)
+        if why := next(filter(None, found), None):
             raise BadInput(
                 f"vehicle {number} can land nowhere",
                 where=mission.source,
@@ -60,7 +59,7 @@ def _why_not(mission: Mission, vehicle: Vehicle, plan: LostLink) -> list[str]:
     sensed, daa = at_start(mission, vehicle, planned_state(vehicle)), mission.daa
     zones = hard_zones(mission.zones)
     volume = buffered(daa.well_clear, daa.buffer)
-    scene = Scene((), zones, volume, daa.lookahead_s, NONE.here, daa.looks_first)
+    scene = Scene((), zones, volume, daa.lookahead_s, own_bounds(mission), daa.looks_first)
     beat_s, said = mission.simulation.heartbeat_ms / 1000, list[str]()
     for site in in_order(plan, vehicle.position):
         why = SLOW if sinks_too_slowly(site, sensed.ability) else NO_WAY

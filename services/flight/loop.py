@@ -219,8 +219,8 @@ class Flight:
         now = self.now_ms
         if self.carriers:
             flown = {vid: Flown(s.position, s.velocity) for vid, s in self._everyone()}
-            for vid, carrier in self.carriers.items():
-                self.seen[vid] = surveillance.stepped(carrier, self.seen[vid], now, flown)
+            unseen = frozenset(vid for vid, s in self.vehicle_states.items() if s.stands)
+            self.seen = surveillance.all_stepped(self.carriers, self.seen, now, flown, unseen)
         self._executive(Tick(now, self._own()))
         if now % self.mission.simulation.heartbeat_ms == 0:
             self._heartbeat()

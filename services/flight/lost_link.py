@@ -9,10 +9,10 @@ from cratous.core.authority.link_loss import FINISH, LAND, LOITER, RETURN
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.rejoining import Router
 from cratous.services.icarous.lost_link import LostLink, OnFailure
-from cratous.services.mission.landing import on_failure_of, sites_of
+from cratous.services.mission.landing import on_failure_of, site_under, sites_of
 from cratous.services.mission.merging import merging_of
-from cratous.spec.mission import Mission, Position, Zone
-from cratous.spec.mission.link_loss import WithoutLink, words
+from cratous.spec.mission import GroundedVehicle, Mission, Position, Vehicle, Zone
+from cratous.spec.mission.link_loss import LandingSite, WithoutLink, words
 from cratous.spec.mission.on_failure import AfterFailure, Failed
 from cratous.spec.mission.plan import Pose
 
@@ -37,8 +37,7 @@ ALWAYS_MS = 2**40
 def lost_link(mission: Mission, vehicle_id: int) -> LostLink | None:
     """The lost-link behaviour for one vehicle: that of the mission, else the one of a vehicle in ICAROUS's hand.
 
-    None where the mission sets none and has sensors or a merge fix: courses are not permitted against sensed tracks,
-    nor in the turns of a merge.
+    None where the mission sets none and has sensors or a merge fix: with these it is flown only if it is asked for.
     """
     loss = mission.link_loss
     if loss is None:
@@ -56,17 +55,30 @@ def lost_link(mission: Mission, vehicle_id: int) -> LostLink | None:
 
 
 def after_failure(mission: Mission, vehicle_id: int) -> OnFailure | None:
-    """What the mission sets for one vehicle after a declared failure, None if it sets nothing."""
+    """What the mission sets for one vehicle after a declared failure, None if it sets nothing.
+
+    One that starts on the ground of a site lands there if none is named.
+    """
     after = on_failure_of(mission)
     if after is None:
         return None
     goal = mission.vehicle(vehicle_id).position if after.to is None else Position(*after.to)
     goal_of = goal if after.choice is AfterFailure.RETURN else None
     sites, site = after.sites, after.name if after.lands else ""
+    if after.choice is AfterFailure.LAND and not site:
+        site = _launch_site(mission.vehicle(vehicle_id), sites)
     if after.choice is AfterFailure.DITCH:
         sites = tuple(one for one in sites if one.ditch)
     flies = LostLink(MODES[after.choice], ALWAYS_MS, after.words, _way, goal_of, site, sites)
     return OnFailure(Asked(*(one in after.of for one in Failed)), flies)
+
+
+def _launch_site(vehicle: Vehicle, sites: tuple[LandingSite, ...]) -> str:
+    """The site on whose ground a vehicle starts, "" for none."""
+    if not isinstance(vehicle, GroundedVehicle):
+        return ""
+    site = site_under(vehicle.stands_at, sites)
+    return "" if site is None else site.name
 
 
 def _way(

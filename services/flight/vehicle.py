@@ -104,6 +104,11 @@ class State:
     landed: bool = False
     on_ground: bool = False
 
+    @property
+    def stands(self) -> bool:
+        """Whether it is on the ground and no intruder of others: it has landed, or does not roll to take off yet."""
+        return self.landed or (self.on_ground and not self.air.speed_m_s)
+
 
 Step = tuple[State, tuple[FromVehicle, ...]]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cratous.core.avoidance.drift import NONE
 from cratous.core.avoidance.manoeuvre import Motion, Pace
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.routing.polylines import Track
@@ -82,6 +83,9 @@ def steered(course: Course, sensed: Sensed, beat_s: float) -> Choice:
     """
     motion, ability = sensed.motion, sensed.ability
     p, step_m = motion.position, motion.speed_m_s * beat_s
+    track, exact = course.track, sensed.here == NONE.here
+    if not exact and course.site is not None and course.flown_to_its_end and track is not None:
+        return _sinking(track, course.speed_m_s, sensed, beat_s)
     wide_m = 1.5 * motion.speed_m_s / ability.turn_rate_rad_s
     lands = course.site is not None
     if course.track is not None and (course.left or lands):
@@ -95,6 +99,27 @@ def steered(course: Course, sensed: Sensed, beat_s: float) -> Choice:
     climb = min(max((height_m - p.alt_m) / beat_s, -most), most)
     heading = math.atan2(aim.east_m - p.east_m, aim.north_m - p.north_m)
     return Choice("heading", heading, course.speed_m_s, climb, beat_s, True, None)
+
+
+def _sinking(track: Track, speed: float, sensed: Sensed, beat_s: float) -> Choice:
+    """The final descent by a state that is not exact: at its rate along its line, and on past its end, until the ground.
+
+    The ground is where it is felt, not where the sensed altitude says that it is.
+    """
+    (gate, touch), p = track.points[-2:], sensed.motion.position
+    north, east = touch.north_m - gate.north_m, touch.east_m - gate.east_m
+    length_m = math.hypot(north, east)
+    north, east = north / length_m, east / length_m
+    along_m = (p.north_m - touch.north_m) * north + (p.east_m - touch.east_m) * east
+    aside_m = (p.east_m - touch.east_m) * north - (p.north_m - touch.north_m) * east
+    wide_m = 1.5 * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
+    # as far ahead as its noise, so that it does not turn after that
+    ahead_m = max(speed * beat_s, math.sqrt(abs(aside_m) * wide_m), sensed.here.wide_m)
+    heading = math.atan2(east, north) - math.atan2(aside_m, ahead_m)
+    rate = (gate.alt_m - touch.alt_m) * speed / length_m
+    wanted_m = touch.alt_m - along_m * rate / speed - rate * beat_s
+    climb = min(max((wanted_m - p.alt_m) / beat_s, -1.5 * rate), -0.5 * rate)
+    return Choice("heading", heading, speed, climb, beat_s, True, None)
 
 
 def _on_circle(hold: Hold, p: Position, step_m: float, wide_m: float) -> Position:

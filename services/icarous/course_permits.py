@@ -3,7 +3,8 @@
 The kernels check it at each heartbeat from the present position. Each leg keeps the zones, given the
 deviation from it; the rest of the route and the laps within the look-ahead keep the buffered volume of every
 known intruder clear, in straight flight or along its announced route, with the time thresholds; the disc of
-the circle keeps the cylinder clear. A route to a landing site ends on the ground, without a circle or
+the circle keeps the cylinder clear. A sensed intruder is anywhere within its bounds; the vehicle itself is anywhere
+within its own, which widens the margin to zones. A route to a landing site ends on the ground, without a circle or
 anything after it.
 """
 
@@ -12,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from cratous.core.avoidance.drift import Off
 from cratous.core.avoidance.manoeuvre import Motion, way_along
 from cratous.core.avoidance.prediction import Piece, after, first_violation_s
 from cratous.core.avoidance.resolution import Scene
@@ -56,8 +58,9 @@ def _speed_m_s(piece: Piece) -> float:
 
 
 def _against_zones(pieces: tuple[Piece, ...], scene: Scene, aside_m: float) -> Iterator[str]:
+    off = Off(aside_m + scene.here.wide_m, scene.here.high_m)
     for zone in scene.zones:
-        if not all(_keeps(piece, zone, aside_m) for piece in pieces):
+        if not all(_keeps(piece, zone, off) for piece in pieces):
             yield f"zone {zone.id} is in the way"
 
 
@@ -86,7 +89,7 @@ def _refused(
         yield from _against_others(pieces, sensed, scene, daa)
         return
     disc_m = course.hold.radius_m + TRACKING_S * motion.speed_m_s
-    if not zones_permit(course.middle, scene.zones, disc_m):
+    if not _disc_keeps(course.middle, disc_m, scene):
         yield "no circle there keeps the zones"
     begin_s = sum(piece.duration_s for piece in pieces)
     points, until_s = _points(course, motion, scene), begin_s + scene.lookahead_s
@@ -115,5 +118,14 @@ def _points(course: Course, motion: Motion, scene: Scene) -> list[Position]:
     return [*left, *lap[:-1] * math.ceil(scene.lookahead_s / lap_s), begin]
 
 
-def _keeps(piece: Piece, zone: Zone, aside_m: float) -> bool:
-    return leg_keeps(piece.position, after(piece, piece.duration_s), zone, aside_m)
+def _keeps(piece: Piece, zone: Zone, off: Off) -> bool:
+    end = after(piece, piece.duration_s)
+    return leg_keeps(piece.position, end, zone, off.wide_m, off.high_m)
+
+
+def _disc_keeps(middle: Position, disc_m: float, scene: Scene) -> bool:
+    """Whether a disc keeps the zones, wherever its middle is within the own bounds."""
+    wide_m, high_m = disc_m + scene.here.wide_m, scene.here.high_m
+    if not zones_permit(middle, scene.zones, wide_m):
+        return False
+    return not high_m or all(leg_keeps(middle, middle, z, wide_m, high_m) for z in scene.zones)

@@ -95,7 +95,11 @@ def told(failing: Failing, vehicle_id: int) -> Fails:
 
 
 def noted(before: Failing, sensed: Sensed, out: Sequence[FromInstance]) -> Failing:
-    """The state with what the instance has answered at this heartbeat: a certificate, why there is none, or neither."""
+    """The state with what the instance has answered at this heartbeat: a certificate, why there is none, or neither. On
+    the ground before the take-off none is needed.
+    """
+    if sensed.on_ground:
+        return before._replace(without=False)
     for one in out:
         if isinstance(one, Wish) and one.intruder_id:
             before = before._replace(last=one.intruder_id)

@@ -138,6 +138,7 @@ class Instance:
             )
             state = permits.resumed(self.config, state, sensed, in_turn)
         state = replace(state, cycle=cycle, courses=now, ways=ways, beats=state.beats + 1)
+        state, fails = link_loss.declared(self.config, state, sensed)
         state, up = take_off.heartbeat(self.config, state, sensed)
         state, lost = link_loss.heartbeat(self.config, state, sensed)
         state, merges = merging.heartbeat(self.config, state, sensed)
@@ -149,16 +150,24 @@ class Instance:
         if self.config.on_failure is not None:
             state = replace(state, failing=noted(state.failing, sensed, out))
         state, hears = self._hears(state, sensed.now_ms)
-        return state, (*up, *lost, *merges, *hears, *out, messages.Up(self.config.vehicle_id, beat))
+        return state, (
+            *fails,
+            *up,
+            *lost,
+            *merges,
+            *hears,
+            *out,
+            messages.Up(self.config.vehicle_id, beat),
+        )
 
     def _hears(self, state: State, now_ms: int) -> tuple[State, tuple[messages.Hears, ...]]:
         """A change of whether UxAS is heard, for the record; not reported here if the mission sets a lost-link
-        behaviour, which reports it itself.
+        behaviour alone, which reports it itself.
         """
         last_ms = state.told.heard_ms
         heard = in_time(last_ms, now_ms, LINK_LOST_MS)
         plan = self.config.lost_link
-        says_so = plan is not None and not plan.in_hand
+        says_so = plan is not None and not plan.in_hand and self.config.on_failure is None
         if says_so or not self.config.records or heard != state.unheard:
             return state, ()
         told = messages.Hears(self.config.vehicle_id, now_ms, heard, last_ms)
@@ -168,7 +177,7 @@ class Instance:
         """How far ahead the routes of others are needed at a heartbeat [s]: the look-ahead, or without limit
         where permits or courses are checked against them.
         """
-        daa, plan = self.config.daa, self.config.alone(state.failing.declared)
+        daa, plan = self.config.daa, self.config.alone(state.failing.failure)
         linked = plan is None or in_time(state.told.heard_ms, now_ms, plan.after_ms)
         linked = linked or (plan is not None and plan.in_hand)
         linked = linked and state.no_link.loss.mode == LINKED

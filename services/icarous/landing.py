@@ -19,15 +19,13 @@ from cratous.services.icarous.course import Course, courses, radius_m
 from cratous.services.icarous.lost_link import LostLink
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import bearing_rad
-from cratous.services.mission.landing import BRAKING_M_S2
+from cratous.services.mission.landing import BRAKING_M_S2, STEEP
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.plan import Pose
 
 DIRECTIONS = 8
 """A site is approached straight on, or from this many directions, those closest to straight on first."""
-STEEP = 0.5
-"""Share of the climb rate used in the final descent."""
 EVEN = 0.8
 """Largest share of the climb rate used on the route down to the gate."""
 LEGS = 24

@@ -68,12 +68,11 @@ class Tried(NamedTuple):
 
 def heartbeat(
     config: Config, state: State, sensed: Sensed
-) -> tuple[State, tuple[Fails | WithoutLink, ...]]:
-    """The state with the mode and course for this heartbeat, and what to report."""
-    state, said = _declared(config, state, sensed)
-    plan, now_ms = config.alone(state.failing.declared), sensed.now_ms
+) -> tuple[State, tuple[WithoutLink, ...]]:
+    """The state with the mode and course for this heartbeat, and what to report. `declared` comes before it."""
+    plan, now_ms = config.alone(state.failing.failure), sensed.now_ms
     if plan is None:
-        return state, said
+        return state, ()
     before, tried = state.no_link, Tried(None)
     linked_ms = heard_by(state.failing.failure, state.told.heard_ms)
     if plan.in_hand:
@@ -108,7 +107,7 @@ def heartbeat(
     tried_ms = now_ms if due else before.tried_ms
     after = replace(state, no_link=NoLink(stepped.loss, course, tried_ms, linked_ms, aside_ms))
     if stepped.act == NOTHING:
-        return after, said
+        return after, ()
     if stepped.act == REJOIN:
         after = replace(after, held=None, search=IDLE)
     heard_ms = state.told.heard_ms
@@ -118,10 +117,10 @@ def heartbeat(
     vid, why = config.vehicle_id, _words(stepped.act, plan, tried, course, silent)
     if sensed.on_ground and stepped.act != REJOIN:
         why = f"{silent}: {STAYS}"
-    return after, (*said, WithoutLink(vid, now_ms, mode, chosen, heard_ms, why))
+    return after, (WithoutLink(vid, now_ms, mode, chosen, heard_ms, why),)
 
 
-def _declared(config: Config, state: State, sensed: Sensed) -> tuple[State, tuple[Fails, ...]]:
+def declared(config: Config, state: State, sensed: Sensed) -> tuple[State, tuple[Fails, ...]]:
     """The state with a failure that is declared now, and what was flown by itself until then left."""
     if config.on_failure is None:
         return state, ()
@@ -166,7 +165,7 @@ def flown(
     """The manoeuvre to fly without the link: along the course, or by avoidance if no course is permitted; on
     the ground none.
     """
-    plan = config.alone(state.failing.declared)
+    plan = config.alone(state.failing.failure)
     course, goal = state.no_link.course, plan.goal if plan else None
     if state.no_link.loss.mode == LANDED:
         stands = Choice("heading", sensed.motion.heading_rad, 0.0, 0.0, 0.0, True, None)

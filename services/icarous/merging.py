@@ -64,6 +64,9 @@ class Ahead(NamedTuple):
     entered: bool
 
 
+NOT_AHEAD = Ahead(None, False, False, False)
+
+
 def heard(config: Config, state: State, message: Talk) -> State:
     """The state after another member's message. BadInput if the sender is not another member."""
     fix, before = config.merging, state.merging
@@ -83,7 +86,9 @@ def heartbeat(
     beat_s = config.heartbeat_ms / 1000
     course = None if before.course is None else before.course.flown(sensed.motion, beat_s)
     way = _followed(before.way, state, sensed, beat_s)
-    ahead = _ahead(fix, course, way, sensed)
+    # after a declared failure it no longer flies the route over the fix, and keeps no slot
+    failed = state.failing.declared
+    ahead = NOT_AHEAD if failed else _ahead(fix, course, way, sensed)
     merger, slot, arrival = _agreed(fix, before, state, sensed, ahead)
     early = arrival is not None and arrival.act == 1
     stage = merge_step(
@@ -91,7 +96,8 @@ def heartbeat(
     )
     going = replace(state, merging=before._replace(way=way))
     course = _flown(config, going, sensed, stage, course, arrival)
-    flies = _flies(course, sensed, config.daa.lookahead_s)
+    announced = state.no_link.course if failed else course
+    flies = _flies(announced, sensed, config.daa.lookahead_s)
     merger, said = talk.beat(fix.talks, merger, flies, now_ms)
     told = _told(fix, stage, merger, slot)
     after = Merging(stage, merger, way, course, slot, told)
@@ -181,7 +187,7 @@ def _ahead(fix: Fix, course: Course | None, way: Followed | None, sensed: Sensed
     if course is not None and course.track is not None:
         track, at_m = course.track, course.s_m
     if track is None or sensed.on_ground or sensed.landed:
-        return Ahead(None, False, False, False)
+        return NOT_AHEAD
     there = Position(*fix.place, 0.0)
     rest_m = max(track.length_m - at_m, 0.0)
     s_m = track.nearest(there, at_m, rest_m).s_m

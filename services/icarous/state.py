@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from cratous.core.authority.cycle import Cycle
+from cratous.core.authority.failure import Failure, procedure
 from cratous.core.authority.take_off import STANDING, Departure
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.prediction import Intruder
@@ -52,9 +53,11 @@ class Config(NamedTuple):
     merging: Fix | None = None
     on_failure: OnFailure | None = None
 
-    def alone(self, failed: bool) -> LostLink | None:
-        """What the vehicle flies by itself: after a declared failure what follows it, else without the link."""
-        return self.on_failure.flies if failed and self.on_failure is not None else self.lost_link
+    def alone(self, failure: Failure) -> LostLink | None:
+        """What the vehicle flies by itself: without the link, or after a declared failure."""
+        if self.on_failure is None:
+            return self.lost_link
+        return (self.lost_link, self.on_failure.flies)[procedure(failure, 0, 1)]
 
 
 class Rising(NamedTuple):

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 
+from cratous.core.authority.failure import heard_by
 from cratous.core.authority.take_off import (
     CLIMBING,
     ROLLING,
@@ -41,6 +42,7 @@ from cratous.spec.records import replace
 AGAIN_MS = 2000
 """Where no climb-out is permitted, the next search follows this much later [ms]."""
 NO_LINK = "UxAS is not heard"
+FAILED = "a failure is declared"
 NO_WAY = "there is no way up"
 WORDS = {
     BEGIN: "the way up is permitted: it rolls",
@@ -65,12 +67,14 @@ def heartbeat(config: Config, state: State, sensed: Sensed) -> tuple[State, tupl
     mode = before.departure.mode
     if plan is None or mode == UP:
         return state, ()
-    now_ms, heard_ms, course, why = sensed.now_ms, state.told.heard_ms, before.course, before.why
+    now_ms, course, why = sensed.now_ms, before.course, before.why
+    # after a declared failure UxAS asks for no take-off any more
+    heard_ms = heard_by(state.failing.failure, state.told.heard_ms)
     if course is not None:
         course = course.flown(sensed.motion, _beat_s(config))
     if mode == STANDING:
         course = None
-        if _is_due(config, plan, sensed, before):
+        if not state.failing.declared and _is_due(config, plan, sensed, before):
             by = partial(_why_not, config, state, sensed)
             course, why = first_way_up(plan, sensed, by)
             state = replace(state, rising=before._replace(tried_ms=now_ms))
@@ -78,7 +82,7 @@ def heartbeat(config: Config, state: State, sensed: Sensed) -> tuple[State, tupl
         why = _why_not(config, state, sensed, course)
         course = None if why else course
     linked = in_time(heard_ms, now_ms, plan.silence_ms)
-    why = why if linked else NO_LINK
+    why = why if linked else FAILED if state.failing.declared else NO_LINK
     ended = mode == CLIMBING and course is not None and course.flown_to_its_end
     stepped = departure_step(
         before.departure, heard_ms, now_ms, plan.silence_ms,
@@ -97,7 +101,7 @@ def heartbeat(config: Config, state: State, sensed: Sensed) -> tuple[State, tupl
         if mode != STANDING or why == before.why:
             return after, ()
         text = f"it stands: {why}"
-    return after, (TakesOff(config.vehicle_id, now_ms, mode, heard_ms, text),)
+    return after, (TakesOff(config.vehicle_id, now_ms, mode, state.told.heard_ms, text),)
 
 
 def flown(config: Config, state: State, sensed: Sensed) -> tuple[State, Choice]:

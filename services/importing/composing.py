@@ -7,7 +7,7 @@ from math import atan2, degrees
 from typing import Any, NamedTuple
 
 from cratous.services.importing.imported_content import Fence, Intruder, Parts, Place, Way
-from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR
+from cratous.services.loading.yaml_daa import DEFAULT_WELL_CLEAR
 from cratous.services.mission.frames import Projection
 from cratous.services.parameters.mapping import Setting, settings_of
 from cratous.services.parameters.parameter_file import default_of

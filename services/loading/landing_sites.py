@@ -12,13 +12,15 @@ from cratous.core.permit.remainder import zones_permit
 from cratous.services.loading.checks import Finding, as_errors
 from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import Document
-from cratous.services.mission.landing import BRAKING_M_S2, TOUCHES_OFF_BEATS, sites_of
+from cratous.services.mission.landing import BRAKING_M_S2, sites_of, touches_off_m
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Position
 from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.on_failure import AfterFailure
 
 SECTION = "landing_sites"
+LANDING_SECTIONS = ("link_loss", "on_failure")
+LANDS = (AfterFailure.LAND.value, AfterFailure.DITCH.value)
 
 
 def landing_sites(document: Document, places: Places) -> tuple[LandingSite, ...]:
@@ -33,19 +35,15 @@ def landing_sites(document: Document, places: Places) -> tuple[LandingSite, ...]
 
 def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterator[BadInput]:
     """Problems with landing sites: unused ones, duplicate names, and landings that name an unknown site."""
-    section = "on_failure" if "on_failure" in document.data else "link_loss"
-    loss, names = document.data.get(section, {}), [site.name for site in sites]
-    ditches = loss.get("choice") == AfterFailure.DITCH.value
-    lands = ditches or loss.get("choice") == AfterFailure.LAND.value
-    asked = [site.name for site in sites if site.ditch] if ditches else names
-    told = ", ".join(asked) or "none"
-    if sites and not lands:
+    asked = {one: document.data[one] for one in LANDING_SECTIONS if one in document.data}
+    names = [site.name for site in sites]
+    if sites and not any(loss["choice"] in LANDS for loss in asked.values()):
         yield BadInput(
             "no vehicle lands at these sites",
             where=document.where((SECTION,)),
             item=SECTION,
             expected="link_loss or on_failure with choice land beside them",
-            got=loss.get("choice", "none"),
+            got=", ".join(loss["choice"] for loss in asked.values()) or "none",
         )
     for k, name in enumerate(names):
         if name in names[:k]:
@@ -56,6 +54,15 @@ def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterato
                 expected="names that differ",
                 got=name,
             )
+    for section in asked:
+        yield from _named(document, section, sites)
+
+
+def _named(document: Document, section: str, sites: tuple[LandingSite, ...]) -> Iterator[BadInput]:
+    """Problems with the site that a section names."""
+    loss = document.data[section]
+    ditches, lands = loss["choice"] == AfterFailure.DITCH.value, loss["choice"] in LANDS
+    asked = [site.name for site in sites if site.ditch or not ditches]
     site = loss.get("site")
     if site is not None and not lands:
         yield BadInput(
@@ -72,7 +79,7 @@ def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterato
             f"there is no such {what}" if site else f"there is no {what}",
             where=document.where((section, key)),
             item=f"{section}.{key}",
-            expected=f"one of landing_sites: {told}",
+            expected=f"one of landing_sites: {', '.join(asked) or 'none'}",
             got=site or "none",
         )
 
@@ -84,7 +91,6 @@ def ground_problems(mission: Mission) -> Iterator[Finding]:
     """
     yield from _heights(mission)
     yield from _overlaps(mission)
-    beat_s = mission.simulation.heartbeat_ms / 1000
     guarded = [mission.vehicle(number) for number in mission.instances]
     for k, site in enumerate(sites_of(mission)):
         place = Position(site.north_m, site.east_m, site.ground_m)
@@ -100,7 +106,7 @@ def ground_problems(mission: Mission) -> Iterator[Finding]:
                 )
         for vehicle in guarded:
             speed = vehicle.min_speed_m_s
-            off_m = TOUCHES_OFF_BEATS * speed * beat_s
+            off_m = touches_off_m(mission, vehicle)
             if not roll_fits(site.radius_m, speed, BRAKING_M_S2, off_m):
                 item, least_m = f"{SECTION}[{k}].radius_m", speed * speed / (4 * BRAKING_M_S2)
                 yield Finding(

@@ -27,7 +27,8 @@ from cratous.services.loading.uxas_frame import frame_of
 from cratous.services.loading.uxas_requests import request_of
 from cratous.services.loading.uxas_tasks import Interests, other
 from cratous.services.loading.uxas_tasks import task as read_task
-from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
+from cratous.services.loading.yaml_daa import DEFAULT_WELL_CLEAR
+from cratous.services.loading.yaml_mission import finish
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import integer_of
 from cratous.spec.mission import (

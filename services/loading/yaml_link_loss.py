@@ -42,8 +42,7 @@ def yaml_link_loss(
     loss = LinkLoss(choice, after_ms, place, name)
     if choice is WithoutLink.LAND:
         loss = LandingLoss(choice, after_ms, place, data.get("site", name), sites)
-    sensed = "sensing" in document.data
-    refuse([_problem(document, *one) for one in _found(loss, simulation, instances, sensed)])
+    refuse([_problem(document, *one) for one in _found(loss, simulation, instances)])
     return loss
 
 
@@ -56,12 +55,14 @@ def words(loss: LinkLoss) -> str:
 
 def place_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
     """Faults of the place to return to: a zone present at the start, or the ground, prevents loitering there."""
-    to, section = None if mission.link_loss is None else mission.link_loss.to, "link_loss"
     after = on_failure_of(mission)
+    if mission.link_loss is not None and mission.link_loss.to is not None:
+        yield from _place(mission, where, mission.link_loss.to, "link_loss")
     if after is not None and after.to is not None:
-        to, section = Position(*after.to), "on_failure"
-    if to is None:
-        return
+        yield from _place(mission, where, Position(*after.to), "on_failure")
+
+
+def _place(mission: Mission, where: Where, to: Position, section: str) -> Iterator[BadInput]:
     item = f"{section}.to.position"
 
     def bad(what: str, expected: str, got: str) -> BadInput:
@@ -77,13 +78,9 @@ def place_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
             yield bad("nothing returns there", f"a place that keeps zone {zone.id}", place)
 
 
-def _found(loss: LinkLoss, simulation: Simulation, instances: int, sensed: bool) -> Iterator[Found]:
+def _found(loss: LinkLoss, simulation: Simulation, instances: int) -> Iterator[Found]:
     if not instances:
         yield (), "nobody would act by it", "a vehicle with an ICAROUS instance", "none"
-    if sensed:
-        # lost-link flight is permitted against straight tracks without position error
-        what = "what is flown without the link is not permitted against sensed tracks"
-        yield (), what, "no section sensing beside it", "both"
     if loss.to is not None and loss.choice is not WithoutLink.RETURN:
         yield ("to",), "nothing returns there", "choice return", loss.choice.value
     if not lasted(0, loss.after_ms, FEWEST_BEATS * simulation.heartbeat_ms):

@@ -22,7 +22,7 @@ from cratous.spec.mission.merging import DirectFaults, Merging, Silence
 SEPARATION_S = 20.0
 """Default time between two vehicles at the fix, as in ICAROUS [s]."""
 BESIDE = {
-    "sensing": "what is flown over a merge fix is not permitted against sensed tracks",
+    "sensing": "members that may be anywhere within their sensed bounds turn the others aside, which miss their slots",
     "link_loss": "a vehicle that acts by itself without the link keeps no slot",
 }
 ORIGIN = Vec2(0.0, 0.0)

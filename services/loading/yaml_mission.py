@@ -34,7 +34,8 @@ from cratous.services.loading.take_off import on_their_ground, take_off_problems
 from cratous.services.loading.take_off import words as take_off_words
 from cratous.services.loading.yaml_bridge import yaml_bridge_times
 from cratous.services.loading.yaml_bridge_faults import yaml_bridge_faults
-from cratous.services.loading.yaml_guidance import guidance_problems, guided
+from cratous.services.loading.yaml_daa import Sections, daa_of
+from cratous.services.loading.yaml_guidance import guidance_problems
 from cratous.services.loading.yaml_link_loss import place_problems, yaml_link_loss
 from cratous.services.loading.yaml_link_loss import words as link_loss_words
 from cratous.services.loading.yaml_merging import merging_problems, yaml_merging
@@ -49,26 +50,16 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import (
     Camera,
     Change,
-    Daa,
-    FailureDaa,
     FaultySimulation,
     Frame,
     GroundedVehicle,
-    LinkLoss,
-    LinkLossDaa,
     LivePlanningMission,
-    MergingDaa,
     Mission,
-    OrderedDaa,
-    OrderedSensedDaa,
-    Resolution,
-    SensedDaa,
     Simulation,
     TimedBridgeMission,
     Traffic,
     Vehicle,
     Velocity,
-    WellClear,
     Zone,
     ZoneKind,
     changes,
@@ -84,13 +75,9 @@ from cratous.spec.mission.changes import (
     WindChange,
     ZoneEnd,
 )
-from cratous.spec.mission.merging import Merging
 from cratous.spec.mission.merging import words as merging_words
-from cratous.spec.mission.on_failure import OnFailure
-from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.sensing import words as sensing_words
 
-DEFAULT_WELL_CLEAR = WellClear(dthr_m=150.0, zthr_m=30.0, tthr_s=15.0, tcoa_s=0.0)
 MAX_BANK_DEG, MAX_CLIMB_M_S = 30.0, 5.0
 """Defaults of a vehicle."""
 
@@ -197,9 +184,12 @@ def _mission(document: Document, seed: int) -> Mission:
     live = bool(data.get("bridge", {}).get("uxas_route_planner", False))
     instances, simulation = _instances(document, vehicles), _simulation(document)
     sensing = yaml_sensing(document, simulation, len(instances))
-    link_loss = yaml_link_loss(document, places, simulation, len(instances))
-    on_failure = yaml_on_failure(document, places, len(instances))
-    merging = yaml_merging(document, places)
+    sections = Sections(
+        sensing,
+        yaml_link_loss(document, places, simulation, len(instances)),
+        yaml_merging(document, places),
+        yaml_on_failure(document, places, len(instances)),
+    )
     times = yaml_bridge_times(document, simulation)
     kind: Callable[..., Mission] = LivePlanningMission if live else Mission
     if times != USUAL:
@@ -212,7 +202,7 @@ def _mission(document: Document, seed: int) -> Mission:
         tasks=tuple(
             yaml_task(entry, places, document.where, k) for k, entry in enumerate(data["tasks"])
         ),
-        daa=_daa(data.get("daa", {}), sensing, link_loss, merging or on_failure),
+        daa=daa_of(data.get("daa", {}), sections),
         zones=tuple(_zone(entry, places) for entry in data.get("zones", [])),
         traffic=tuple(_traffic(entry, places) for entry in data.get("traffic", [])),
         relations=data.get("relations", "").strip(),
@@ -327,34 +317,6 @@ def _traffic(data: dict[str, Any], places: Places) -> Traffic:
         appears_ms=round(float(data.get("appears_s", 0)) * 1000),
         vanishes_ms=None if vanishes is None else round(float(vanishes) * 1000),
     )
-
-
-def _daa(
-    data: dict[str, Any],
-    sensing: Sensing | None,
-    link_loss: LinkLoss | None,
-    more: Merging | OnFailure | None,
-) -> Daa:
-    volume = {name: float(value) for name, value in data.get("well_clear", {}).items()}
-    kept: dict[str, Any] = {"close_starts": bool(data.get("close_starts", False))}
-    kept |= {name: float(data[name]) for name in ("lookahead_s", "buffer") if name in data}
-    volume_kept = guided(replace(DEFAULT_WELL_CLEAR, **volume), data.get("guidance"))
-    first = Resolution(data.get("resolution", Resolution.HEADING))
-    if link_loss is not None:
-        return LinkLossDaa(volume_kept, **kept, resolution=first, link_loss=link_loss)
-    if isinstance(more, Merging):
-        return MergingDaa(volume_kept, **kept, resolution=first, merging=more)
-    if more is not None:
-        return FailureDaa(volume_kept, **kept, resolution=first, on_failure=more)
-    if first is Resolution.HEADING:  # the default: keeps the established name
-        return (
-            Daa(volume_kept, **kept)
-            if sensing is None
-            else SensedDaa(volume_kept, **kept, sensing=sensing)
-        )
-    if sensing is None:
-        return OrderedDaa(volume_kept, **kept, resolution=first)
-    return OrderedSensedDaa(volume_kept, **kept, sensing=sensing, resolution=first)
 
 
 def _simulation(document: Document) -> Simulation:

@@ -12,11 +12,6 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission.on_failure import AfterFailure, Failed, OnFailure
 
 SECTION = "on_failure"
-BESIDE = {
-    "link_loss": "what is flown without the link is not combined with what is flown after a failure",
-    "sensing": "what is flown after a failure is not permitted against sensed tracks",
-    "merging": "a vehicle that acts by itself after a failure keeps no slot",
-}
 
 
 def yaml_on_failure(document: Document, places: Places, instances: int) -> OnFailure | None:
@@ -50,18 +45,7 @@ def _problems(document: Document, after: OnFailure, instances: int) -> Iterator[
         where = document.where((SECTION, *key))
         return BadInput(what, where=where, item=item, expected=expected, got=got)
 
-    for other, what in BESIDE.items():
-        if other in document.data:
-            yield bad((), what, f"no section {other} beside it", "both")
     if not instances:
         yield bad((), "nobody would act by it", "a vehicle with an ICAROUS instance", "none")
     if after.to is not None and after.choice is not AfterFailure.RETURN:
         yield bad(("to",), "nothing returns there", "choice return", after.choice.value)
-    for k, vehicle in enumerate(document.data["vehicles"]):
-        if vehicle.get("start") == "ground":
-            item = f"vehicles[{k}].start"
-            yield BadInput(
-                "a vehicle that has not taken off cannot act by itself after a failure",
-                where=document.where(("vehicles", k, "start")), item=item,
-                expected="vehicles that start in the air", got="ground",
-            )  # fmt: skip

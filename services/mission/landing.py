@@ -4,8 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from cratous.core.avoidance.drift import NONE, Off
 from cratous.core.avoidance.landing import on_ground
-from cratous.spec.mission import FailureDaa, LandingLoss, Mission, Position
+from cratous.spec.mission import (
+    CombinedDaa,
+    FailureDaa,
+    LandingLoss,
+    Mission,
+    Position,
+    Vehicle,
+)
 from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.on_failure import OnFailure
 
@@ -17,11 +25,31 @@ SLACK_M = 0.01
 """Within this height a vehicle is on the ground [m]."""
 TOUCHES_OFF_BEATS = 1.0
 """Largest deviation of the touchdown point, in heartbeats of flight."""
+STEEP = 0.5
+"""Share of the climb rate used in the final descent."""
+
+
+def own_bounds(mission: Mission) -> Off:
+    """How far a vehicle may be from its sensed position after one fix [m]; 0 if its own state is exact."""
+    sensing = mission.sensing
+    gps = None if sensing is None else sensing.gps
+    if sensing is None or gps is None:
+        return NONE.here
+    return Off(sensing.sigmas * gps.horizontal_m, sensing.sigmas * gps.vertical_m)
+
+
+def touches_off_m(mission: Mission, vehicle: Vehicle) -> float:
+    """How far from its touchdown point a vehicle may touch down [m], after a heartbeat of flight, and with the bounds of
+    its own position: an altitude that is wrong moves the point along the slope of the final descent.
+    """
+    speed, off = vehicle.min_speed_m_s, own_bounds(mission)
+    late_m = TOUCHES_OFF_BEATS * speed * mission.simulation.heartbeat_ms / 1000
+    return late_m + off.wide_m + off.high_m * speed / (STEEP * vehicle.max_climb_m_s)
 
 
 def on_failure_of(mission: Mission) -> OnFailure | None:
     """What a mission specifies to be flown after a declared failure; None if nothing."""
-    return mission.daa.on_failure if isinstance(mission.daa, FailureDaa) else None
+    return mission.daa.on_failure if isinstance(mission.daa, FailureDaa | CombinedDaa) else None
 
 
 def sites_of(mission: Mission) -> tuple[LandingSite, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from cratous.spec.mission import MergingDaa, Mission
+from cratous.spec.mission import CombinedDaa, MergingDaa, Mission
 from cratous.spec.mission.merging import Merging
 
 TOLERANCE_MS = 1000
@@ -13,7 +13,7 @@ TOLERANCE_MS = 1000
 
 def merging_of(mission: Mission) -> Merging | None:
     """The fix at which vehicles merge; None if the mission has none."""
-    return mission.daa.merging if isinstance(mission.daa, MergingDaa) else None
+    return mission.daa.merging if isinstance(mission.daa, MergingDaa | CombinedDaa) else None
 
 
 def merges(mission: Mission, vehicle_id: int) -> Merging | None:

@@ -113,6 +113,7 @@ class Monitor:
             self.safe_state.state(body)
         elif short == "FailureState":
             self.failure.declared(body)
+            self.link_loss.declared(body)
             self.authority.declared(body)
             self.safe_state.declared(body)
         elif short == "TakeOffState":

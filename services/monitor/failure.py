@@ -146,8 +146,14 @@ class FailureWatch(LinkLossWatch):
         told.said.append(f"{body.Mode.name} from {now_ms / 1000:.2f} s")
 
     def _without_link(self, told: Told, body: Any) -> None:
-        """Process what is flown without the link before any failure: the known way, then a circle, in ICAROUS's hand."""
+        """Process what is flown without the link before any failure: the known way, then a circle, in ICAROUS's hand; or
+        the mission's own procedure, which has a row of its own.
+        """
         now_ms, mode = body.Time, int(body.Mode)
+        if self._asked is not None:
+            told.loss = Loss(mode, now_ms)
+            told.said.append(f"{body.Mode.name} from {now_ms / 1000:.2f} s, without the link")
+            return
         may = {
             loss_step(told.loss, FINISH, heard_ms, now_ms, self._silent_ms, way, end).loss.mode
             for way, end in product(EITHER, EITHER)

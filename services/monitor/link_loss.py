@@ -29,7 +29,7 @@ from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.landing import on_ground
 from cratous.core.kernel import qualified
 from cratous.core.schedule.rows import runs_forward
-from cratous.services.mission.landing import sites_of
+from cratous.services.mission.landing import on_failure_of, sites_of
 from cratous.services.monitor.landing import Down
 from cratous.services.monitor.observation import Ending, Presence, Span
 from cratous.services.monitor.required_rows import alone_without_link_item
@@ -53,7 +53,8 @@ NO_LOSS = Loss(LINKED, 0)
 class Told:
     """State of one vehicle. loss: last reported; said: (what it flew, since when) in words; wrong:
     faults with their times [ms]; down_ms: time at which its connection ended [ms], None while it is
-    up; margin_ms: least time margin when a mode began [ms].
+    up; margin_ms: least time margin when a mode began [ms]; failed_ms: time at which it declared a failure [ms], None
+    for none: what it flies since then is judged in the row on that.
     """
 
     loss: Loss = NO_LOSS
@@ -62,6 +63,7 @@ class Told:
     down_ms: int | None = None
     margin_ms: int | None = None
     checks: int = 0
+    failed_ms: int | None = None
 
 
 def _may_not_come(simulation: Simulation) -> bool:
@@ -83,13 +85,14 @@ class LinkLossWatch:
         self._asked, self._beat_ms = mission.link_loss, mission.simulation.heartbeat_ms
         there = mission.instances if self._asked is not None else ()
         self._told = {number: Told() for number in there}
+        self._may_fail = on_failure_of(mission) is not None
         self._over = False
         self._known_heard = not _may_not_come(mission.simulation)
 
     def state(self, body: Any) -> None:
         """Process a LinkLossState: what a vehicle flies from now on."""
         told = self._told.get(body.VehicleID)
-        if told is None or self._asked is None:
+        if told is None or self._asked is None or told.failed_ms is not None:
             return
         told.checks += 1
         now_ms, heard_ms, after_ms = body.Time, body.Heard, self._asked.after_ms
@@ -111,6 +114,15 @@ class LinkLossWatch:
         told.loss = Loss(mode, now_ms)
         told.said.append(f"{body.Mode.name} from {now_ms / 1000:.2f} s")
 
+    def declared(self, body: Any) -> None:
+        """Process a FailureState: this row ends here."""
+        told = self._told.get(body.VehicleID)
+        if told is None or not self._may_fail or told.failed_ms is not None:
+            return
+        self._missed(told, body.Time)
+        told.failed_ms = body.Time
+        told.said.append(f"a failure declared at {body.Time / 1000:.2f} s")
+
     def status(self, body: Any) -> None:
         """Process a BridgeStatus: UxAS's end reports that a connection is open or has ended."""
         told = self._told.get(body.VehicleID)
@@ -127,7 +139,8 @@ class LinkLossWatch:
         self._over, self._end_ms = True, body.Time
         for vehicle, told in self._told.items():
             self._missed(told, body.Time)
-            if text := self._on_the_ground(vehicle, told, body.Time):
+            judged = told.failed_ms is None
+            if judged and (text := self._on_the_ground(vehicle, told, body.Time)):
                 told.wrong.append((body.Time, text))
 
     def _on_the_ground(self, vehicle: int, told: Told, now_ms: int) -> str:
@@ -161,6 +174,8 @@ class LinkLossWatch:
     def _missed(self, told: Told, now_ms: int) -> None:
         """Record a fault if a connection has been down for so long that a report was due."""
         if told.down_ms is None or told.loss.mode != LINKED or self._asked is None:
+            return
+        if told.failed_ms is not None:
             return
         bound_ms = self._asked.after_ms + LATEST_BEATS * self._beat_ms
         since = told.loss.since_ms

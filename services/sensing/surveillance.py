@@ -18,16 +18,18 @@ from cratous.services.sensing.own_state import Own
 from cratous.services.sensing.sensors import Detection
 from cratous.services.sensing.tracks import Tracks, estimate, tracked
 from cratous.services.sensing.vehicle_sensors import Carried, Sensors
-from cratous.spec.mission import Mission, SensedDaa
+from cratous.spec.mission import Mission
+from cratous.spec.mission.sensing import Sensing
 
 
 class Carrier(NamedTuple):
-    """A vehicle with sensors and its fixed configuration. daa: parameters with the sensors; seed: of the
-    mission's variant; cooperating: vehicles with an ICAROUS instance, as reported by ADS-B.
+    """A vehicle with sensors and its fixed configuration. lookahead_s: of detect and avoid; seed: of the mission's
+    variant; cooperating: vehicles with an ICAROUS instance, as reported by ADS-B.
     """
 
     own_id: int
-    daa: SensedDaa
+    sensing: Sensing
+    lookahead_s: float
     seed: int
     step_ms: int
     cooperating: frozenset[int]
@@ -54,29 +56,52 @@ class Shown(NamedTuple):
 
 def carriers(mission: Mission, instances: Iterable[int]) -> dict[int, Carrier]:
     """The vehicles with sensors: each that has an ICAROUS instance, if the mission defines sensors."""
-    daa, step_ms = mission.daa, mission.simulation.step_ms
-    if not isinstance(daa, SensedDaa):
+    sensing, seed, step_ms = mission.sensing, mission.seed, mission.simulation.step_ms
+    if sensing is None:
         return {}
-    ours = frozenset(instances)
-    return {vid: Carrier(vid, daa, mission.seed, step_ms, ours) for vid in sorted(ours)}
+    ours, lookahead_s = frozenset(instances), mission.daa.lookahead_s
+    return {vid: Carrier(vid, sensing, lookahead_s, seed, step_ms, ours) for vid in sorted(ours)}
 
 
 def stepped(
     carrier: Carrier, before: Surveillance, now_ms: int, aircraft: Mapping[int, Flown]
 ) -> Surveillance:
     """The state after a simulation step: new measurements are in transit, and the own state has moved on."""
-    sensors = Sensors(carrier.own_id, carrier.daa.sensing, carrier.seed, carrier.step_ms)
+    sensors = Sensors(carrier.own_id, carrier.sensing, carrier.seed, carrier.step_ms)
     after = vehicle_sensors.stepped(
         sensors, Carried(before.under_way, before.own), now_ms, aircraft
     )
     return Surveillance(*after, before.tracks)
 
 
+def all_stepped(
+    carriers: Mapping[int, Carrier],
+    before: Mapping[int, Surveillance],
+    now_ms: int,
+    aircraft: Mapping[int, Flown],
+    unseen: frozenset[int],
+) -> dict[int, Surveillance]:
+    """`stepped` for each carrier. unseen: vehicles on the ground, which are no traffic to others."""
+    return {
+        vid: stepped(
+            carrier,
+            before[vid],
+            now_ms,
+            {
+                number: one
+                for number, one in aircraft.items()
+                if number == vid or number not in unseen
+            },
+        )
+        for vid, carrier in carriers.items()
+    }
+
+
 def arrived(carrier: Carrier, before: Surveillance, now_ms: int) -> Surveillance:
     """Process the measurements that have arrived by the heartbeat at now_ms [ms]."""
     known = Carried(before.under_way, before.own)
     after, others = vehicle_sensors.came(carrier.own_id, known, now_ms)
-    return Surveillance(*after, tracked(before.tracks, others, carrier.daa.sensing, now_ms))
+    return Surveillance(*after, tracked(before.tracks, others, carrier.sensing, now_ms))
 
 
 def beat(
@@ -96,7 +121,7 @@ def shown(carrier: Carrier, now: Surveillance, now_ms: int, air: Flown) -> tuple
     found = [_shown(carrier, carrier.own_id, carrier.own_id, known)]
     for track in now.tracks.tracks:
         if track.shown:
-            known = estimate(track, now_ms, carrier.daa.sensing.manoeuvre_m_s2)
+            known = estimate(track, now_ms, carrier.sensing.manoeuvre_m_s2)
             found.append(_shown(carrier, track.number, track.source, known))
     return tuple(found)
 
@@ -108,10 +133,10 @@ def exactly(now_ms: int, air: Flown) -> Estimate:
 
 
 def _shown(carrier: Carrier, number: int, source: int, known: Estimate) -> Shown:
-    sigmas = carrier.daa.sensing.sigmas
+    sigmas = carrier.sensing.sigmas
     (wide, wide_rate), (high, high_rate) = deviations(known.wide), deviations(known.high)
     off = Spread(sigmas * wide, sigmas * wide_rate, sigmas * high, sigmas * high_rate)
-    return Shown(number, source, known, off._replace(steady_s=carrier.daa.lookahead_s))
+    return Shown(number, source, known, off._replace(steady_s=carrier.lookahead_s))
 
 
 def given(carrier: Carrier, seen: tuple[Shown, ...], true: Sensed) -> Sensed:

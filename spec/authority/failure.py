@@ -108,6 +108,13 @@ def is_heard_by(failure: Failure, heard: int, by: int) -> bool:
     return by == NEVER
 
 
+def is_procedure(failure: Failure, without_link: int, after_failure: int, chosen: int) -> bool:
+    """Without the link the procedure for that is flown; from a declared failure on the one for that, link or no link."""
+    if failure.kind == NONE:
+        return chosen == without_link
+    return chosen == after_failure
+
+
 def is_begun_anew(before: Failure, after: Failure, loss: Loss, begun: Loss) -> bool:
     """When a failure is declared, what was flown by itself until then is left, and what is chosen begins."""
     if before.kind == NONE and after.kind != NONE:

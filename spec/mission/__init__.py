@@ -1,9 +1,8 @@
 """What a mission is: vehicles, tasks, zones, relations and traffic, as plain frozen data.
 
-Everything inside is SI in ONE local tangent frame per mission: north and east in metres from the
-frame's origin, altitude in metres above mean sea level (MSL), headings in radians clockwise from
-north, times in integer milliseconds after mission start (the instant at which the automation
-response is accepted). Degrees, feet and AGL altitudes exist only in the loaders.
+Everything inside is SI in ONE local tangent frame per mission: north and east in metres from the frame's origin,
+altitude in metres above mean sea level (MSL), headings in radians clockwise from north, times in integer milliseconds
+after mission start (when the automation response is accepted). Degrees, feet and AGL altitudes exist only in loaders.
 """
 
 from __future__ import annotations
@@ -52,9 +51,8 @@ class Frame:
 
 @dataclass(frozen=True)
 class Vehicle:
-    """One aircraft. `protected` vehicles get an ICAROUS instance and the guarantees G1 to G5.
-
-    power_w: power drawn in flight [W], None if not known.
+    """One aircraft. `protected` ones get an ICAROUS instance and the guarantees G1 to G5. power_w: drawn in flight [W],
+    None if not known.
     """
 
     id: int
@@ -103,9 +101,7 @@ class TaskKind(StrEnum):
     """A task known only from the messages of an external service; not in mission files."""
 
 
-SEARCHES = (
-    TaskKind.LINE_SEARCH, TaskKind.POINT_SEARCH, TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH,
-)  # fmt: skip
+SEARCHES = (TaskKind.LINE_SEARCH, TaskKind.POINT_SEARCH, TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH)  # fmt: skip
 """The kinds served by camera coverage."""
 AREAS = (TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH)
 """The kinds for which an entire area has to be seen."""
@@ -228,10 +224,8 @@ class GuidedWellClear(WellClear):
 
 @dataclass(frozen=True)
 class Daa:
-    """How ICAROUS detects and avoids: the volume that it keeps clear and how far it looks ahead.
-
-    close_starts: vehicles may start inside each other's volume.
-    """
+    """How ICAROUS detects and avoids: the volume that it keeps clear and how far it looks ahead. close_starts: vehicles
+    may start inside each other's volume."""
 
     well_clear: WellClear
     lookahead_s: float = 60.0
@@ -269,10 +263,8 @@ class OrderedSensedDaa(SensedDaa):
 
 @dataclass(frozen=True)
 class LinkLoss:
-    """What every vehicle with an ICAROUS instance flies once UxAS has been silent for more than after_ms [ms].
-
-    to: where to return to, None: where each vehicle started; name: of that place.
-    """
+    """What every vehicle with an ICAROUS instance flies once UxAS has been silent for more than after_ms [ms]. to: where
+    to return to, None: where each vehicle started; name: of that place."""
 
     choice: WithoutLink
     after_ms: int = 5000
@@ -306,6 +298,16 @@ class FailureDaa(OrderedDaa):
     """Detect and avoid in a mission that specifies what is flown after a declared failure."""
 
     on_failure: OnFailure = field(default_factory=OnFailure)
+
+
+@dataclass(frozen=True)
+class CombinedDaa(OrderedDaa):
+    """Detect and avoid in a mission that specifies more than one of these; None: not specified."""
+
+    sensing: Sensing | None = None
+    link_loss: LinkLoss | None = None
+    merging: Merging | None = None
+    on_failure: OnFailure | None = None
 
 
 @dataclass(frozen=True)
@@ -351,12 +353,12 @@ class Mission:
     @property
     def sensing(self) -> Sensing | None:
         """The sensors of its ICAROUS instances; None: they get the true states."""
-        return self.daa.sensing if isinstance(self.daa, SensedDaa) else None
+        return self.daa.sensing if isinstance(self.daa, SensedDaa | CombinedDaa) else None
 
     @property
     def link_loss(self) -> LinkLoss | None:
         """What is flown while UxAS is not heard; None: not specified."""
-        return self.daa.link_loss if isinstance(self.daa, LinkLossDaa) else None
+        return self.daa.link_loss if isinstance(self.daa, LinkLossDaa | CombinedDaa) else None
 
     @property
     def bridge_times(self) -> BridgeTimes:

@@ -14,13 +14,13 @@ from ground_tools import Flown, flown_of, refusal
 
 from cratous.bridge import lmcp
 from cratous.judge import judge
-from cratous.services.flight.dynamics import traffic_state
+from cratous.services.flight.dynamics import AirState, touching_down, traffic_state
 from cratous.services.flight.landing_reach import require_reachable
 from cratous.services.flight.notices import truth
 from cratous.services.loading import load
 from cratous.services.parameters.listing import parameters_of
 from cratous.services.system_model.replay import replay
-from cratous.spec.mission import LandingLoss, LinkLossDaa
+from cratous.spec.mission import LandingLoss, LinkLossDaa, Position
 from cratous.spec.mission.guarantees import Outcome
 
 ROW = "what vehicle 1 flies without the link"
@@ -275,3 +275,14 @@ def test_what_follows_from_a_landing_is_a_parameter(landed: Flown, root: Path) -
 def test_a_site_that_no_way_reaches_leaves_another(root: Path, tmp_path: Path) -> None:
     require_reachable(load(mission_file(root, tmp_path, zones=AROUND)))
     require_reachable(load(mission_file(root, tmp_path, zones=AROUND, link_loss=LAND)))
+
+
+@pytest.mark.parametrize(
+    ("height_m", "climbs_m_s"),
+    [(1.0, -4.0), (0.5, -2.0), (0.629, -2.516), (0.6349, -2.5396), (0.636, -2.5), (2.0, -2.5)],
+)
+def test_who_comes_to_the_ground_comes_down_to_it(height_m: float, climbs_m_s: float) -> None:
+    """A step that would end millimetres above the ground, where it counts as on it, ends on it: nothing jumps there."""
+    wanted_m_s = -5.0 if height_m == 1.0 else -2.5
+    air = AirState(Position(0.0, 0.0, 100.0 + height_m), 0.0, 15.0, wanted_m_s)
+    assert touching_down(air, 100.0, 0.25).climb_m_s == pytest.approx(climbs_m_s)

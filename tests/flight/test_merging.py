@@ -265,7 +265,7 @@ def test_vehicles_that_cannot_wait_or_that_nobody_flies_are_refused(
         ({"bridge": {"instances": 1}}, "nobody merges it"),
         ({"vehicles": [{**data["vehicles"][0], "start": "ground"}, data["vehicles"][1]]}, "it starts on the ground"),
         ({"link_loss": {"choice": "loiter"}}, "keeps no slot"),
-        ({"sensing": {"sensors": [{"kind": "adsb", "horizontal_m": 5, "vertical_m": 5, "velocity_m_s": 1}]}}, "sensed tracks"),
+        ({"sensing": {"sensors": [{"kind": "adsb", "horizontal_m": 5, "vertical_m": 5, "velocity_m_s": 1}]}}, "miss their slots"),
     ):  # fmt: skip
         path.write_text(yaml.safe_dump({**data, **change}))
         with pytest.raises(BadInput, match=what):
@@ -302,3 +302,26 @@ def test_one_that_avoids_traffic_on_the_way_to_its_slot_is_in_time(
     # its route is straight along the north axis
     aside = [abs(b.East) for b in flight.told("TruthState") if b.VehicleID == 1]
     assert max(aside) > 100
+
+
+def test_one_that_has_declared_a_failure_keeps_no_slot(root: Path, tmp_path: Path) -> None:
+    """Somebody appears beside vehicle 1 on the way to its slot: it acts by itself, and the other passes at its own."""
+    path = mission_file(root, tmp_path, 2)
+    data = yaml.safe_load(path.read_text())
+    beside = {"id": 90, "position": {"north_m": -3030, "east_m": 30, "alt_m": 300}, "velocity": {"north_m_s": 22, "east_m_s": 1}, "appears_s": 40, "vanishes_s": 110}  # fmt: skip
+    after = {"choice": "hold", "of": ["surprised"]}
+    path.write_text(yaml.safe_dump({**data, "traffic": [beside], "on_failure": after}))
+    flight = flown(path)
+    (failed,) = flight.told("FailureState")
+    assert (failed.Failure.name, failed.VehicleID) == ("Surprised", 1)
+    assert failed.Time > next(b.Time for b in flight.told("MergeState") if b.Slot >= 0)
+    assert flight.stages(1) == ["Away", "Asking", "InSlot", "Away"]
+    told = [b for b in flight.told("MergeState") if b.VehicleID == 1][-1]
+    assert (told.Time, told.Request, told.Slot) == (failed.Time, 0, -1)
+    assert abs(flight.passed(2) - flight.slot(2)) <= TOLERANCE_MS
+    verdicts, judged = flight.verdicts(), flight.judged(tmp_path)
+    rows = [f"what vehicle {k} does after a failure" for k in (1, 2)]
+    for row in (*rows, *flight.rows(), "authority over vehicle 1"):
+        assert verdicts[row].outcome is Outcome.HOLDS, verdicts[row]
+        assert judged[row] == "holds"
+    assert from_data(Mission, to_data(flight.mission)) == flight.mission

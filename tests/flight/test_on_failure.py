@@ -37,7 +37,8 @@ TOWARDS = {"id": 90, "position": {"north_m": 2500, "east_m": 0, "alt_m": 300}, "
 FAR = [{"id": 1, "kind": "must_fly", "points": [{"north_m": 3000, "east_m": 0, "alt_m": 300}]}]
 OVER_IT = [{"at_s": 10, "zone": {"id": 9, "kind": "keep_out", "vertices": [[-300, -500], [900, -500], [900, 500], [-300, 500]]}}]  # fmt: skip
 AROUND = [{"id": 8, "kind": "keep_out", "vertices": [[200, 1300], [400, 1300], [400, 1450], [200, 1450]]}]  # fmt: skip
-SENSORS = {"sensors": [{"kind": "adsb", "horizontal_m": 5, "vertical_m": 5, "velocity_m_s": 1}]}
+SENSORS = {"sensors": [{"kind": "gps", "horizontal_m": 3, "vertical_m": 2, "velocity_m_s": 0.3}, {"kind": "adsb", "horizontal_m": 8, "vertical_m": 6, "velocity_m_s": 0.8, "latency_s": 0.4, "drop_out": 0.1}]}  # fmt: skip
+LARGE = [{"name": "field", "position": {"north_m": 300, "east_m": 1500}, "radius_m": 150}]
 
 
 def mission_file(root: Path, folder: Path, **sections: Any) -> Path:
@@ -185,6 +186,60 @@ def test_what_it_is_not_asked_about_changes_nothing(root: Path, tmp_path: Path) 
     assert flight.judged(tmp_path)[ROW] == "holds"
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_it_lands_by_what_its_sensors_say(root: Path, tmp_path: Path, seed: int) -> None:
+    """Its altitude is wrong by metres: it sinks until it feels the ground, on the disc, which has room for that."""
+    sections = {"sensing": {"seed": seed, **SENSORS}, "landing_sites": LARGE}
+    flight = flown_of(load(mission_file(root, tmp_path, **sections)))
+    assert failures(flight) == [("Ended", 0)]
+    assert modes(flight) == ["Land", "Final", "Landed"]
+    last = flight.told("TruthState")[-1]
+    assert math.hypot(last.North - 300, last.East - 1500) < 150
+    assert (last.Altitude, last.VelocityNorth, last.VelocityEast) == (0, 0, 0)
+    assert_known(flight, tmp_path)
+    seen = [one for one in flight.told("SensedState") if one.TrackID == 1]
+    truth = {one.Time: one for one in flight.told("TruthState") if one.VehicleID == 1}
+    assert max(abs(one.Altitude - truth[one.Time].Altitude) for one in seen) > 0.5
+
+
+def test_it_lands_clear_of_a_sensed_aircraft(root: Path, tmp_path: Path) -> None:
+    """It is surprised by one that flies beside it, and sees it only by ADS-B, with errors and drop-outs."""
+    sections = {"traffic": [BESIDE], "changes": None, "tasks": FAR, "landing_sites": LARGE}
+    path = mission_file(root, tmp_path, sensing={"seed": 1, **SENSORS}, **sections)
+    flight = flown_of(load(path))
+    assert failures(flight) == [("Surprised", 90)]
+    assert modes(flight) == ["Loiter", "Land", "Final", "Landed"]
+    assert_known(flight, tmp_path)
+
+
+def test_who_stands_on_the_ground_is_seen_by_no_sensor(root: Path, tmp_path: Path) -> None:
+    """Both land, one after the other: once the first is down the second has no track of it."""
+    data = yaml.safe_load((root / "tests/missions/on_failure.yaml").read_text())
+    other = {**data["vehicles"][0], "id": 2, "position": {"north_m": -900, "east_m": 900, "alt_m": 360}}  # fmt: skip
+    sites = [
+        *LARGE,
+        {"name": "far", "position": {"north_m": -1500, "east_m": 900}, "radius_m": 150},
+    ]
+    sections = {"vehicles": [data["vehicles"][0], other], "landing_sites": sites}
+    after = {"choice": "land"}
+    path = mission_file(root, tmp_path, on_failure=after, sensing=SENSORS, **sections)
+    flight = flown_of(load(path))
+    landed = {b.VehicleID: b.Time for b in flight.told("LinkLossState") if b.Mode.name == "Landed"}
+    assert sorted(landed) == [1, 2]
+    first, second = sorted(landed, key=lambda number: landed[number])
+    coast_ms = 6000
+    assert landed[second] > landed[first] + coast_ms
+    tracks = [one for one in flight.told("SensedState") if one.ObserverID == second]
+    assert any(one.VehicleID == first for one in tracks)
+    late = [one.Time for one in tracks if one.VehicleID == first]
+    assert max(late) < landed[first] + coast_ms
+    verdicts, judged = flight.verdicts(), flight.judged(tmp_path)
+    for vehicle in (1, 2):
+        row = f"what vehicle {vehicle} does after a failure"
+        assert verdicts[row].outcome is Outcome.HOLDS
+        assert judged[row] == "holds"
+
+
 def test_another_vehicle_takes_over_its_tasks(root: Path, tmp_path: Path) -> None:
     data = yaml.safe_load((root / "tests/missions/on_failure.yaml").read_text())
     other = {
@@ -253,8 +308,7 @@ LAND = {"choice": "land"}
 @pytest.mark.parametrize(
     ("sections", "said"),
     [
-        ({"link_loss": {"choice": "loiter"}}, "on_failure: what is flown without the link is not combined"),
-        ({"sensing": SENSORS}, "on_failure: what is flown after a failure is not permitted against sensed tracks"),
+        ({"sensing": SENSORS}, "landing_sites[0].radius_m: vehicle 1 does not come to a stand on field; expected at least 95.62 m"),
         ({"bridge": {"instances": 0}}, "on_failure: nobody would act by it"),
         ({"landing_sites": None}, "on_failure.site: there is no such landing site; expected one of landing_sites: none"),
         ({"on_failure": {"choice": "ditch", "site": "field"}}, "on_failure.site: there is no such landing site to ditch at; expected one of landing_sites: meadow; got field"),

@@ -33,7 +33,7 @@ from cratous.services.sensing.surveillance import (
     stepped,
 )
 from cratous.services.sensing.surveillance import given as given_to
-from cratous.spec.mission import Position, SensedDaa, Velocity, WellClear
+from cratous.spec.mission import Position, Velocity
 from cratous.spec.mission.sensing import Sensing, Sensor, SensorKind
 
 Matrix = np.ndarray
@@ -129,8 +129,7 @@ def test_a_fix_that_is_used_later_than_it_comes_still_corrects_the_own_state(
 ) -> None:
     gps = Sensor(SensorKind.GPS, 3.0, 5.0, 0.3, latency_ms=latency_ms)
     sensing = Sensing((gps, Sensor(SensorKind.ADSB, 10.0, 8.0, 1.0)))
-    daa = SensedDaa(WellClear(150.0, 30.0, 15.0, 0.0), sensing=sensing)
-    carrier, now = Carrier(1, daa, 0, 250, frozenset({1})), Surveillance()
+    carrier, now = Carrier(1, sensing, 60.0, 0, 250, frozenset({1})), Surveillance()
     for time_ms in range(0, 60_001, 250):
         air = Flown(Position(0.022 * time_ms, 0.0, 300.0), Velocity(22.0, 0.0, 0.0))
         now = stepped(carrier, now, time_ms, {1: air})
@@ -149,7 +148,7 @@ def test_a_fix_that_is_used_later_than_it_comes_still_corrects_the_own_state(
 def test_the_speed_that_is_sensed_is_moved_into_the_limits_by_no_more_than_its_bound(
     off: float, low: float, high: float
 ) -> None:
-    carrier = Carrier(1, SensedDaa(WellClear(150.0, 30.0, 15.0, 0.0)), 0, 250, frozenset())
+    carrier = Carrier(1, Sensing(()), 60.0, 0, 250, frozenset())
     fast = Flown(Position(0.0, 0.0, 300.0), Velocity(18.0, 24.0, 0.0))
     seen = (Shown(1, 1, exactly(0, fast), Spread(wide_m_s=off)),)
     for limits, wanted in (((15.0, 25.0), low), ((35.0, 40.0), high)):
