@@ -15,6 +15,7 @@ from keyword import iskeyword
 from typing import Any
 
 from cratous.bridge.lmcp.fast_json import plain_object
+from cratous.bridge.lmcp.json_text import plain_text
 from cratous.bridge.lmcp.model import ANY, INTEGER_RANGES, when_removed
 from cratous.bridge.lmcp.objects import (
     LmcpEnum,
@@ -105,6 +106,9 @@ def _data(value: Any) -> Any:
 
 def to_json(obj: LmcpObject) -> str:
     """One line of canonical JSON; BadInput if a field holds a value of another type."""
+    plain = plain_text(obj)
+    if plain is not None:
+        return plain
     try:
         return _encode(to_dict(obj))
     except RecursionError:

@@ -156,7 +156,7 @@ def main(function: str, memory_mb: int) -> None:
 
     _say(answers, {"version": version_digest()})
     threading.Thread(target=read, daemon=True).start()
-    gc.set_threshold(100_000, 10, 10)  # as in a command that flies a single run
+    gc.set_threshold(100_000, 10, 10)  # as in a command
     loading = True
     while True:
         task = json.loads(tasks.get())

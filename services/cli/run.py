@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -20,6 +22,8 @@ from cratous.services.cli.show import requirement_table, say, shown_path
 from cratous.services.cli.user_requirements import own_data, own_files, own_lines, own_option
 
 Tell = Callable[[str], None]
+COLLECTED_AT = 1_000_000
+"""Number of objects made and kept in a flight at which garbage is looked for."""
 
 
 @click.command()
@@ -191,12 +195,24 @@ def run_one(
 
     with places.in_reasons(), results_folder(target, tell) as folder:
         if processes is None:
-            report = run_mission(loaded, folder, settings, placed)
+            with _rarely_collected():
+                report = run_mission(loaded, folder, settings, placed)
         else:
             from cratous.services.cli.processes_job import run_in_processes
 
             report = run_in_processes(loaded, path, folder, settings, processes, placed)
     return report, target
+
+
+@contextmanager
+def _rarely_collected() -> Iterator[None]:
+    """Context in which garbage is collected rarely: a flight leaves hardly any, and nobody waits for its next step."""
+    before = gc.get_threshold()
+    gc.set_threshold(COLLECTED_AT, 10, 10)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
 
 
 def summary(report: dict[str, Any], folder: Path | None) -> dict[str, Any]:

@@ -103,7 +103,9 @@ def _hear(told: Told, message: Message, projection: Projection, original: bool) 
         return _close_fence(told, message, projection)
     if isinstance(message, WayOfAnother):
         steered = tuple(one for one in told.steered if one[0] != message.vehicle_id)
-        return _of_another(replace(told, steered=steered), message, projection)
+        if len(steered) != len(told.steered):
+            told = replace(told, steered=steered)
+        return _of_another(told, message, projection)
     if isinstance(message, VelocityOfAnother):
         vid = message.vehicle_id
         steered = tuple(one for one in told.steered if one[0] != vid)

@@ -152,6 +152,43 @@ def _course_rad(v: Velocity) -> float:
     return math.atan2(v.east_m_s, v.north_m_s)
 
 
+class Timed(NamedTuple):
+    """A whole leg at some speed: its velocity, how long it is flown [s], and the changes of position by then [m]."""
+
+    velocity: Velocity
+    flown_s: float
+    north_m: float
+    east_m: float
+    up_m: float
+
+
+MOST_TIMED = 64
+_timed: dict[tuple[int, float], tuple[Track, list[Timed | None]]] = {}
+"""Legs of routes by identity of the route and speed: at each heartbeat the same legs are flown again."""
+
+
+def _legs_at(track: Track, speed: float) -> list[Timed | None]:
+    """The legs of a track at a speed, as far as they are known; to be filled in."""
+    known = _timed.get((id(track), speed))
+    if known is not None and known[0] is track:
+        return known[1]
+    legs: list[Timed | None] = [None] * len(track.directions)
+    if len(_timed) >= MOST_TIMED:
+        _timed.clear()
+    _timed[id(track), speed] = track, legs
+    return legs
+
+
+def _timed_leg(track: Track, leg: int, from_m: float, speed: float) -> Timed:
+    """A leg from an arc length [m] to its end."""
+    a, b, (north, east) = track.points[leg], track.points[leg + 1], track.directions[leg]
+    flown_s = (track.s_m[leg + 1] - from_m) / speed
+    leg_s = math.hypot(b[0] - a[0], b[1] - a[1]) / speed
+    down, north_m_s, east_m_s = (a[2] - b[2]) / leg_s, north * speed, east * speed
+    v = Velocity(north_m_s, east_m_s, down)
+    return Timed(v, flown_s, north_m_s * flown_s, east_m_s * flown_s, -(down * flown_s))
+
+
 def _along(
     track: Track, at_m: float, other: Intruder, until_s: float = math.inf
 ) -> tuple[Piece, ...]:
@@ -162,17 +199,17 @@ def _along(
     if not speed:
         return ()
     (north_m, east_m, alt_m), t_s, first = other.position, 0.0, bisect_right(track.s_m, at_m)
-    last = bisect_right(track.s_m, at_m + until_s * speed) + 1
-    ahead = track.points[first - 1 : last], track.points[first:last], track.s_m[first:last]
+    last = min(bisect_right(track.s_m, at_m + until_s * speed), len(track.s_m) - 1)
+    legs = _legs_at(track, speed)
     # as Piece(...) and so on, in a third of the time: a path of many legs is made at each heartbeat
     new = tuple.__new__
-    for a, b, end_m, (north, east) in zip(*ahead, track.directions[first - 1 :], strict=False):
-        left_s = (end_m - at_m) / speed
-        leg_s = math.hypot(b[0] - a[0], b[1] - a[1]) / speed
-        down, north_m_s, east_m_s = (a[2] - b[2]) / leg_s, north * speed, east * speed
-        place = new(Position, (north_m, east_m, alt_m))
-        v = new(Velocity, (north_m_s, east_m_s, down))
-        pieces.append(new(Piece, (t_s, left_s, place, v)))
-        north_m, east_m = north_m + north_m_s * left_s, east_m + east_m_s * left_s
-        alt_m, t_s, at_m = alt_m - down * left_s, t_s + left_s, end_m
+    for k in range(first - 1, last):
+        timed = legs[k]
+        if k < first:  # it has begun
+            timed = _timed_leg(track, k, at_m, speed)
+        elif timed is None:
+            timed = legs[k] = _timed_leg(track, k, track.s_m[k], speed)
+        v, flown_s, north, east, up = timed
+        pieces.append(new(Piece, (t_s, flown_s, new(Position, (north_m, east_m, alt_m)), v)))
+        north_m, east_m, alt_m, t_s = north_m + north, east_m + east, alt_m + up, t_s + flown_s
     return tuple(pieces)

@@ -25,7 +25,7 @@ from cratous.services.flight.link_lines import way_of_another
 from cratous.services.icarous.inbox import MOST_OTHERS, Told, hear
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Sensed
-from cratous.services.icarous.other_vehicles import LINK_LOST_MS, with_ways
+from cratous.services.icarous.other_vehicles import LINK_LOST_MS, Ways, with_ways
 from cratous.services.icarous.route_end import cylinder
 from cratous.services.icarous.state import Config, State
 from cratous.spec.mission import Daa, Position, Velocity
@@ -155,6 +155,28 @@ def test_one_that_keeps_to_its_way_is_predicted_round_the_corner() -> None:
     assert later(one, 25.0).position == Position(2000.0, 0.0, 300.0)
     assert later(one, 35.0).position == Position(2200.0, 0.0, 300.0)
     assert later(one, 35.0).way[0].start_s == 0.0
+
+
+def test_at_each_heartbeat_and_speed_it_is_predicted_on_the_same_way() -> None:
+    """Legs are timed once per speed: what it is told of a faster or a later flight is its own."""
+    way = (*CORNER[:2], Position(3000.0, 0.0, 330.0), Position(3000.0, 900.0, 330.0))
+    sensed, told = Sensed(0, NORTH, ABILITY, (), Gate(0, 0, False)), Told(others=((2, way),))
+    ways: Ways = ()
+    for beat, speed in enumerate((20.0, 20.0, 25.0, 20.0, 25.0)):
+        place = Position(2000.0, -500.0 + 10.0 * beat, 300.0)
+        other = Intruder(2, place, Velocity(0.0, speed, 0.0), True)
+        ways, (one,) = with_ways(ways, told, sensed._replace(intruders=(other,)), DAA, 0.5)
+        legs_m = (500.0 - 10.0 * beat, 1000.0, 900.0)
+        assert [p.duration_s for p in one.way] == pytest.approx([m / speed for m in legs_m])
+        assert [p.velocity for p in one.way] == [
+            pytest.approx(v) for v in ((0, speed, 0), (speed, 0, -0.03 * speed), (0, speed, 0))
+        ]
+        assert [p.start_s for p in one.way] == pytest.approx(
+            [sum(legs_m[:k]) / speed for k in range(3)]
+        )
+        assert [p.position for p in one.way] == [
+            pytest.approx(p) for p in (place, (2000, 0, 300), (3000, 0, 330))
+        ]
 
 
 @pytest.mark.parametrize(
