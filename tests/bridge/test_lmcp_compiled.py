@@ -176,4 +176,8 @@ def test_what_is_prepared_is_made_with_the_objects_in_its_fields(
 ) -> None:
     monkeypatch.setattr(compiled, "_made", {})
     binary.prepare([lmcp.types["MissionCommand"]])
-    assert {cls.__name__ for cls in compiled._made} >= {"MissionCommand", "Waypoint", "VehicleAction"}
+    assert {cls.__name__ for cls in compiled._made} >= {
+        "MissionCommand",
+        "Waypoint",
+        "VehicleAction",
+    }
