@@ -84,7 +84,7 @@ def test_no_square_in_a_footprint_is_skipped_whatever_lies_beside_it(corners: An
             for a, b in ((-1, -1), (-1, 1), (1, 1), (1, -1))
         ]
         look(centres, side_m, [quad], seen)
-        at = [centres + (a, b) for a in (-half, half) for b in (-half, half)]
+        at = [np.add(centres, (a, b)) for a in (-half, half) for b in (-half, half)]
         inside = [
             (np.abs((c - middle) @ north) <= size[0]) & (np.abs((c - middle) @ east) <= size[1])
             for c in at
