@@ -144,11 +144,8 @@ class _Found:
 
 
 def _key(given: Sequence[np.ndarray]) -> bytes:
-    sha = hashlib.sha256()
-    for array in given:
-        sha.update(f"{array.shape}{array.dtype}".encode())
-        sha.update(np.ascontiguousarray(array))
-    return sha.digest()
+    shapes = repr([(array.shape, array.dtype.char) for array in given])
+    return hashlib.sha256(b"".join([shapes.encode(), *(a.tobytes() for a in given)])).digest()
 
 
 _FOUND, _AHEAD = _Found(64), _Found(16)
