@@ -9,12 +9,12 @@ value that does not exist, a wrong class in a field, bytes after the end) are re
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from cratous.bridge.bytesum import byte_sum
 from cratous.bridge.lmcp import compiled, lazy_messages, model, reference_codec
-from cratous.bridge.lmcp.objects import LmcpObject
+from cratous.bridge.lmcp.objects import LmcpObject, types
 from cratous.bridge.lmcp.reference_codec import MAX_DEPTH, MAX_ELEMENTS
 from cratous.spec.errors import BadInput
 
@@ -24,6 +24,7 @@ __all__ = [
     "MAX_MESSAGE",
     "lazy",
     "pack",
+    "prepare",
     "received",
     "split",
     "unpack",
@@ -37,6 +38,19 @@ _LEAST = _HEAD.size + 1 + _SUM.size
 _AT = _HEAD.size
 _left = compiled.left
 _readers, _writers = compiled.tables(LmcpObject, False)
+
+
+def prepare(classes: Iterable[type[LmcpObject]]) -> None:
+    """Make the functions that read and write these classes, and those of the objects in their fields, which the
+    first message of each would otherwise wait for.
+    """
+    left, done = [*classes], set[type[LmcpObject]]()
+    while left:
+        cls = left.pop()
+        if cls not in done:
+            done.add(cls)
+            compiled.functions(cls)
+            left += [types[field.type] for field in cls.fields if field.kind == "struct"]
 
 
 def pack(obj: LmcpObject) -> bytes:

@@ -142,6 +142,7 @@ def _forget(_series: str) -> None:
 
 model.when_removed(_forget)
 
+_FIELD = re.compile(r"\bo\.(\w+)")
 _PYTHON = {"bool": "bool", "string": "str", "char": "str", "real32": "float", "real64": "float"}
 
 
@@ -261,7 +262,7 @@ class _Maker:
         self.read += [convert for *_, convert in self.group if convert]
         if self.front is None:
             targets = " ".join(part for _, target, _, made in self.group for part in (target, made))
-            names = frozenset(n for n in self.cls.names if re.search(rf"\bo\.{n}\b", targets))
+            names = frozenset(_FIELD.findall(targets)) & frozenset(self.cls.names)
             if any(f.array is not None for f in self.cls.fields if f.name in names):
                 names = frozenset()  # a list read by somebody could be changed
             self.front = list(self.read), names, form.size

@@ -7,9 +7,9 @@ what is still known.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import hashlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -66,7 +66,16 @@ class Outcome:
 
 def look_ahead(instance: Instance) -> Ahead:
     """Shortest routes, heads and tails, and which vehicles share a table."""
-    i = instance
+    given = (*instance[:-1], np.array(instance.waits))
+    known = _AHEAD.of(given)
+    if known is not None:
+        return Ahead(*known)
+    made = _look_ahead(instance)
+    _AHEAD.put(given, made)
+    return made
+
+
+def _look_ahead(i: Instance) -> Ahead:
     reach = shortest(i, i.may)
     head, least, tail = machine_for_pass(i, heads)(i, reach)
     able = np.zeros(i.vehicles, np.int64)
@@ -96,55 +105,58 @@ def look_ahead(instance: Instance) -> Ahead:
 def shortest(instance: Instance, may: np.ndarray) -> np.ndarray:
     """The shortest routes with any stops at options that `may` allows, checked for every stop."""
     i = instance
-    known = _FOUND.of(i.travel, i.duration, may) if is_small(i) else None
+    given = (i.travel, i.duration, may)
+    known = _FOUND.of(given) if is_small(i) else None
     if known is not None:
-        return known
+        return known[0]
     steps = i.travel.size * i.duration.size
     reach: np.ndarray = machine_for(i, shortest_ways, steps)(i.travel, i.duration, may)
     if not machine_for(i, ways_hold, steps)(reach, i.travel, i.duration, may):
         raise RuntimeError("a way with stops is shorter than the shortest way that was found")
     if is_small(i):
-        _FOUND.put((i.travel, i.duration, may), reach)
+        _FOUND.put(given, (reach,))
     return reach
 
 
 class _Found:
-    """Cache of the latest shortest routes, keyed by everything they depend on: a planner asks many questions about
-    the same routes.
+    """Cache of the latest results, keyed by all arrays on which they depend: a planner asks many questions about the
+    same instance.
     """
 
     def __init__(self, most: int) -> None:
         self._most = most
-        self._ways: dict[tuple[Any, ...], np.ndarray] = {}
+        self._made: dict[bytes, tuple[np.ndarray, ...]] = {}
 
-    def of(self, *given: np.ndarray) -> np.ndarray | None:
-        """The stored routes for this travel, durations and options; None if there are none."""
-        found = self._ways.get(_key(given))
-        return None if found is None else found.copy()
+    def of(self, given: Sequence[np.ndarray]) -> tuple[np.ndarray, ...] | None:
+        """The stored arrays for these; None if there are none."""
+        found = self._made.get(_key(given))
+        return None if found is None else tuple(array.copy() for array in found)
 
-    def put(self, given: tuple[np.ndarray, ...], ways: np.ndarray) -> None:
-        """Store routes that were computed and checked; the oldest are dropped."""
-        while len(self._ways) >= self._most:
-            del self._ways[next(iter(self._ways))]
-        self._ways[_key(given)] = ways.copy()
+    def put(self, given: Sequence[np.ndarray], made: Sequence[np.ndarray]) -> None:
+        """Store what was computed, and checked, from these; the oldest are dropped."""
+        while len(self._made) >= self._most:
+            del self._made[next(iter(self._made))]
+        self._made[_key(given)] = tuple(array.copy() for array in made)
 
     def forget_all(self) -> None:
         """Clear the cache."""
-        self._ways.clear()
+        self._made.clear()
 
 
-def _key(given: tuple[np.ndarray, ...]) -> tuple[Any, ...]:
-    return tuple((array.shape, array.tobytes()) for array in given)
+def _key(given: Sequence[np.ndarray]) -> bytes:
+    shapes = repr([(array.shape, array.dtype.char) for array in given])
+    return hashlib.sha256(b"".join([shapes.encode(), *(a.tobytes() for a in given)])).digest()
 
 
-_FOUND = _Found(64)
+_FOUND, _AHEAD = _Found(64), _Found(16)
 
 
 def forget() -> None:
-    """Clear the cache, so that results, and the number of kernel calls, depend only on the questions asked from now
+    """Clear the caches, so that results, and the number of kernel calls, depend only on the questions asked from now
     on.
     """
     _FOUND.forget_all()
+    _AHEAD.forget_all()
 
 
 def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:

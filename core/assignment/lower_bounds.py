@@ -89,8 +89,8 @@ def shortest_ways(travel: np.ndarray, duration: np.ndarray, may: np.ndarray) -> 
                 for a in range(options + 1):
                     reach[v, a, k] = 1 << 40
         for m in range(options):
-            if may[v, m]:
-                onward = reach[v, m]
+            onward = reach[v, m]
+            if may[v, m] and onward.min() < 1 << 40:  # from a last stop no way leads on
                 for a in range(options + 1):
                     ways = reach[v, a]
                     via = int(ways[m] + duration[m])
@@ -110,8 +110,8 @@ def ways_hold(reach: np.ndarray, travel: np.ndarray, duration: np.ndarray, may: 
                 if may[v, b] and not no_shortcut(reach[v, a, b], travel[v, a, b], 0, 0):
                     return False
         for m in range(options):
-            if may[v, m]:
-                onward, stay = reach[v, m], int(duration[m])
+            onward, stay = reach[v, m], int(duration[m])
+            if may[v, m] and onward.min() < 1 << 40:  # no way over a last stop is any way at all
                 for a in range(options + 1):
                     ways = reach[v, a]
                     first = int(ways[m])

@@ -87,7 +87,7 @@ def square_array(vertices: tuple[Corner, ...], side_m: float) -> Any:
 def look(centres: Any, side_m: float, footprints: Any, seen: Any) -> None:
     """Set `seen` (n, bool) for the squares of which every point lies in one of the footprints.
 
-    centres (n, 2): from south to north; footprints (m, k, 2): convex, either orientation; one with
+    centres (n, 2): as from `square_array`; footprints (m, k, 2): convex, either orientation; one with
     NaN sees nothing.
     """
     import numpy as np

@@ -4,6 +4,8 @@ The kernels are those of `core.geofence.planar` and `core.tasks.coverage_steps`,
 them. CPython runs these functions directly; `core.readings.machine.compiled.machine` compiles the same text.
 """
 
+import math
+
 import numpy as np
 
 from cratous.core.geofence.planar import (
@@ -80,12 +82,29 @@ def grid_squares(
     return count
 
 
+def first_from(centres: np.ndarray, low: int, north: float, east: float) -> int:
+    """The first square from `low` on that lies in the row of `north` and not west of `east`, or in a row north of it.
+
+    centres (n, 2): from south to north, and within a row from west to east.
+    """
+    high = len(centres)
+    while low < high:
+        middle = (low + high) // 2
+        if centres[middle, 0] < north or (
+            centres[middle, 0] == north and centres[middle, 1] < east
+        ):
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
 @driver(checked_by=("within_step",))
 def mark_seen(centres: np.ndarray, half: float, quads: np.ndarray, seen: np.ndarray) -> None:
     """Set `seen` (n, bool) for every square of which each point lies in one of the convex footprints.
 
-    centres (n, 2): from south to north; half: of a square's side [m]; quads (m, k, 2): corners of footprints,
-    counter-clockwise (north to east), without NaN. Bounding boxes only skip squares.
+    centres (n, 2): from south to north, and within a row from west to east; half: of a square's side [m]; quads
+    (m, k, 2): corners of footprints, counter-clockwise (north to east), without NaN. Bounding boxes only skip squares.
     """
     total = len(centres)
     for f in range(len(quads)):
@@ -95,21 +114,19 @@ def mark_seen(centres: np.ndarray, half: float, quads: np.ndarray, seen: np.ndar
             low_n, high_n = min(low_n, quad[j, 0]), max(high_n, quad[j, 0])
             low_e, high_e = min(low_e, quad[j, 1]), max(high_e, quad[j, 1])
         south, north, west, east = low_n + half, high_n - half, low_e + half, high_e - half
-        low, high = 0, total
-        while low < high:
-            middle = (low + high) // 2
-            if centres[middle, 0] < south:
-                low = middle + 1
-            else:
-                high = middle
-        k = low
+        k = first_from(centres, 0, south, west)
         while k < total and centres[k, 0] <= north:
             n, e = centres[k, 0], centres[k, 1]
-            if not seen[k] and west <= e and e <= east:
-                within, centre = bool(1), Vec2(n, e)
-                for j in range(len(quad)):
-                    b = j + 1 if j + 1 < len(quad) else 0
-                    p, q = Vec2(quad[j, 0], quad[j, 1]), Vec2(quad[b, 0], quad[b, 1])
-                    within = within_step(within, p, q, centre, half)
-                seen[k] = within
-            k += 1
+            if e < west:
+                k = first_from(centres, k + 1, n, west)
+            elif e > east:
+                k = first_from(centres, k + 1, n, math.inf)
+            else:
+                if not seen[k]:
+                    within, centre = bool(1), Vec2(n, e)
+                    for j in range(len(quad)):
+                        b = j + 1 if j + 1 < len(quad) else 0
+                        p, q = Vec2(quad[j, 0], quad[j, 1]), Vec2(quad[b, 0], quad[b, 1])
+                        within = within_step(within, p, q, centre, half)
+                    seen[k] = within
+                k += 1

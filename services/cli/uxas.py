@@ -135,9 +135,11 @@ def _plans(config: Any, without: tuple[str, ...]) -> bool:
 def _compile_ahead(config: Any, without: tuple[str, ...], log: Any) -> None:
     """Compile before the first request, so that planning services answer in time."""
     if _plans(config, without):
+        from cratous.services.startup import codecs
         from cratous.services.startup.warm import ensure_planning
 
         ensure_planning(lambda text: log("WARN", text))
+        codecs.make()
 
 
 def _spare(config: Any, without: tuple[str, ...], contexts: Any) -> Iterator[bool] | None:

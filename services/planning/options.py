@@ -140,17 +140,35 @@ def expand(
                 dropped.append(Dropped(task.id, able, "", "its own service says how it is flown"))
             elif able:
                 may[flyer] = able
-        made = [
-            one
-            for flyer, able in may.items()
-            for one in _options(task, flyer, able, zones, mission.frame.terrain_m)
-        ]
+        made = _of_all(task, may, zones, mission.frame.terrain_m)
         offered = [one for one in made if isinstance(one, Option)]
         if in_part and not offered:
             offered = parts_of(task, may, zones, mission.frame.terrain_m)
         options += [replace(one, option_id=k) for k, one in enumerate(offered, 1)]
         dropped += [one for one in made if isinstance(one, Dropped)]
     return tuple(options), tuple(dropped)
+
+
+def _of_all(
+    task: Task, may: Mapping[Flyer, tuple[int, ...]], zones: Sequence[Zone], terrain_m: float
+) -> list[Option | Dropped]:
+    """The options of a task for each class; computed once for those that differ in the ids of their cameras."""
+    known: dict[Flyer, list[Option | Dropped]] = {}
+    made: list[Option | Dropped] = []
+    for flyer, able in may.items():
+        alike = flyer._replace(
+            cameras=tuple(replace(one, payload_id=0, camera_id=0) for one in flyer.cameras)
+        )
+        if alike not in known:
+            known[alike] = [*_options(task, flyer, able, zones, terrain_m)]
+            made += known[alike]
+            continue
+        for one in known[alike]:
+            if isinstance(one, Option):
+                made.append(replace(one, vehicles=able, flyer=flyer))
+            else:
+                made.append(one._replace(vehicles=able))
+    return made
 
 
 def _options(

@@ -57,12 +57,12 @@ class Routes:
     ) -> None:
         self.options = options
         self.poses = [starts[vehicle.id] for vehicle in mission.vehicles]
-        self.flyers = [flyer_of(vehicle) for vehicle in mission.vehicles]
+        # routes depend on no camera, so that vehicles that differ in theirs share them
+        self.flyers = [flyer_of(vehicle)._replace(cameras=()) for vehicle in mission.vehicles]
         self.zones, self.flying = tuple(zones), flying
         self._out: dict[tuple[Pose, float], WayOut | None] = {}
         self._maps: dict[float, tuple[Roadmap, ...]] = {}
         self._found: dict[Ends, Route] = {}
-        # by class first: a class with its cameras is dear to hash
         self._times: dict[Flyer, dict[Leg, int | None]] = {flyer: {} for flyer in self.flyers}
         self._times_of = [self._times[flyer] for flyer in self.flyers]
 

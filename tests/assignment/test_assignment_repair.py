@@ -82,6 +82,55 @@ def test_a_way_with_a_stop_that_is_shorter_is_noticed() -> None:
     assert not ways_hold(longer, i.travel, i.duration, i.may)
 
 
+def test_ways_over_stops_from_which_nothing_leads_on_are_left_out_and_no_others() -> None:
+    i = arrays_of(problem(6, 2))
+    travel = i.travel.copy()
+    travel[:, 2] = travel[1, 4] = layers.FAR  # no way on from these
+    travel[:, 6, 3] += 5_000  # over others it is shorter
+    wanted = travel.copy()
+    for v in range(2):
+        for _ in range(6):  # as many rounds as a way may have stops
+            for m in range(6):
+                over = wanted[v, :, m, None] + i.duration[m] + wanted[v, m][None]
+                wanted[v] = np.minimum(wanted[v], over)
+    reach = shortest_ways(travel, i.duration, i.may)
+    assert (reach == wanted).all()
+    assert (reach < travel).any()
+    assert ways_hold(reach, travel, i.duration, i.may)
+    over = np.argwhere(reach < travel)[0]
+    reach[tuple(over)] = travel[tuple(over)]
+    assert not ways_hold(reach, travel, i.duration, i.may)
+
+
+def test_what_looks_ahead_is_made_once_for_the_same_instance(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made: list[Instance] = []
+    really = layers._look_ahead
+
+    def counted(instance: Instance) -> layers.Ahead:
+        made.append(instance)
+        return really(instance)
+
+    monkeypatch.setattr(layers, "_look_ahead", counted)
+    monkeypatch.setattr(layers, "_AHEAD", layers._Found(16))
+    for number, i in enumerate((arrays_of(problem(3, 2)), arrays_of(problem(6, 2))), 1):
+        first = layers.look_ahead(i)
+        again = layers.look_ahead(i._replace(travel=i.travel.copy()))
+        assert len(made) == number
+        assert all((one == other).all() for one, other in zip(first, again, strict=True))
+        again.head[:] = 0  # what one does with it is not seen by the next
+        assert (layers.look_ahead(i).head == first.head).all()
+    # whatever of it is another, it is another question
+    for k, name in enumerate(i._fields):
+        value = getattr(i, name)
+        other = 1 - value if name == "waits" else value + 1
+        if name in ("travel", "added", "duration", "ready", "release", "due", "weight", "waits"):
+            before = len(made)
+            layers.look_ahead(i._replace(**{name: other}))
+            assert len(made) == before + 1, (k, name)
+
+
 def test_the_same_ways_are_gone_over_once(monkeypatch: pytest.MonkeyPatch) -> None:
     gone_over = []
 
@@ -131,7 +180,7 @@ def test_ways_of_large_assignments_are_not_kept(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(layers, "_FOUND", kept)
     i = arrays_of(problem(5, 2))
     layers.shortest(i, i.may)
-    assert kept._ways == {}
+    assert kept._made == {}
 
 
 def test_vehicles_without_work_are_no_bound() -> None:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from cratous.bridge import lmcp
-from cratous.bridge.lmcp import binary, reference_codec
+from cratous.bridge.lmcp import binary, compiled, reference_codec
 from cratous.spec.errors import BadInput
 
 
@@ -169,3 +169,15 @@ def test_messages_behind_each_other_are_split() -> None:
     for wrong in (one + b"LM", one + two[:-1], one + b"x" * 20):
         with pytest.raises(BadInput, match=f"byte {len(one)}"):
             list(binary.split(wrong))
+
+
+def test_what_is_prepared_is_made_with_the_objects_in_its_fields(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(compiled, "_made", {})
+    binary.prepare([lmcp.types["MissionCommand"]])
+    assert {cls.__name__ for cls in compiled._made} >= {
+        "MissionCommand",
+        "Waypoint",
+        "VehicleAction",
+    }

@@ -12,8 +12,10 @@ from task_tools import ELL, FIELD
 from cratous.core.tasks.coverage import (
     area_m2,
     disc,
+    look,
     seen_squares,
     share_covered,
+    square_array,
     square_side_m,
     squares,
 )
@@ -59,6 +61,37 @@ def test_a_square_is_seen_only_if_one_footprint_holds_all_of_it() -> None:
             for k, (x, y) in enumerate(centres):
                 square = box(x - 10, y - 10, x + 10, y + 10)
                 assert (k in seen) == Polygon(footprint).buffer(1e-9).covers(square)
+
+
+@pytest.mark.parametrize("corners", [ELL, FIELD])
+def test_no_square_in_a_footprint_is_skipped_whatever_lies_beside_it(corners: Any) -> None:
+    """Rows are searched for the first square that may lie within: all others are asked one by one here."""
+    rng = np.random.default_rng(7)
+    low, high = np.min(corners, axis=0), np.max(corners, axis=0)
+    side_m = float((high - low).max()) / 40
+    centres = square_array(tuple((float(n), float(e)) for n, e in corners), side_m)
+    seen, wanted = np.zeros(len(centres), np.bool_), np.zeros(len(centres), np.bool_)
+    half = side_m / 2
+    for _ in range(12):
+        middle, size = rng.uniform(low, high), rng.uniform(1.0, 9.0, 2) * side_m
+        turn = rng.uniform(0.0, 0.4)
+        east, north = (
+            np.array([-math.sin(turn), math.cos(turn)]),
+            np.array([math.cos(turn), math.sin(turn)]),
+        )
+        quad = [
+            middle + a * size[0] * north + b * size[1] * east
+            for a, b in ((-1, -1), (-1, 1), (1, 1), (1, -1))
+        ]
+        look(centres, side_m, [quad], seen)
+        at = [np.add(centres, (a, b)) for a in (-half, half) for b in (-half, half)]
+        inside = [
+            (np.abs((c - middle) @ north) <= size[0]) & (np.abs((c - middle) @ east) <= size[1])
+            for c in at
+        ]
+        wanted |= np.logical_and.reduce(inside)
+    assert (seen == wanted).all()
+    assert 0 < seen.sum() < len(seen)
 
 
 def test_what_is_not_seen_counts_in_full() -> None:
