@@ -38,6 +38,9 @@ def differences(mission: Mission, again: Mission) -> list[Difference]:
     for field in fields(Mission):
         if field.name not in OF_FILES:
             found += apart(field.name, getattr(wanted, field.name), getattr(got, field.name))
+    # of records that only some missions have
+    found += apart("bridge", mission.bridge_times, again.bridge_times)
+    found += apart("bridge.uxas_route_planner", mission.live_planning, again.live_planning)
     return found
 
 

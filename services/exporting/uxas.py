@@ -7,6 +7,8 @@ from xml.sax.saxutils import quoteattr
 
 from cratous.bridge.lmcp.xml_writing import dumps
 from cratous.services.exporting.messages import Told
+from cratous.services.loading.lost_link_attributes import AFTER_MS, CHOICES
+from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Mission
 
 CONFIGURATION, MESSAGES = "cfg.xml", "messages.xml"
@@ -53,6 +55,7 @@ def configuration_text(
         asked = {
             "NumberOfUAVs": str(len(instances)),
             "VehicleIDs": " ".join(map(str, instances)),
+            **lost_link_of(mission),
             **(communication or {}),
         }
         services.append(service_text("IcarousCommunicationService", asked))
@@ -65,6 +68,23 @@ def configuration_text(
         + f'  <Service Type="SendMessagesService" PathToMessageFiles=".">\n{sent}  </Service>\n'
         "</UxAS>\n"
     )
+
+
+def lost_link_of(mission: Mission) -> dict[str, str]:
+    """What a mission flies without the link, as attributes of the service for the ICAROUS instances; {} for a choice
+    that they do not have.
+    """
+    loss = mission.link_loss
+    if loss is None:
+        after_ms = mission.bridge_times.lost_link_after_ms
+        return {} if after_ms == AFTER_MS else {"LostLinkAfter_s": f"{after_ms / 1000:.10g}"}
+    if loss.choice.value not in CHOICES:
+        return {}
+    said = {"LostLink": loss.choice.value, "LostLinkAfter_s": f"{loss.after_ms / 1000:.10g}"}
+    if loss.to is not None:
+        place = Projection(mission.frame).to_geodetic(loss.to.north_m, loss.to.east_m)
+        said["LostLinkTo"] = f"{place[0]:.9f} {place[1]:.9f} {loss.to.alt_m:.3f}"
+    return said
 
 
 def service_text(kind: str, attributes: dict[str, str] | None = None) -> str:

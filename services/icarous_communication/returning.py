@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.core.avoidance.way_ahead import near_line
@@ -22,25 +22,13 @@ from cratous.services.icarous_communication.state import (
     tellable,
     turn_radius_of,
 )
+from cratous.services.loading.lost_link_attributes import Place
 from cratous.spec.errors import CratousError
 from cratous.spec.mission import Position
 from cratous.spec.mission.plan import Pose
 
 HERE_M = 1.0
 """A way's first point within this distance of the vehicle is left out [m]."""
-
-
-class Place(NamedTuple):
-    """A place in degrees and metres above mean sea level."""
-
-    lat_deg: float
-    long_deg: float
-    alt_m: float
-
-    @property
-    def is_on_earth(self) -> bool:
-        """Whether its numbers are those of a place."""
-        return abs(self.lat_deg) <= 90 and abs(self.long_deg) <= 180 and math.isfinite(self.alt_m)
 
 
 def goal_of(state: State, vid: int, to: Place | None) -> Position | None:

@@ -10,15 +10,15 @@ from typing import Any, NamedTuple
 from cratous.bridge.port import Address, address
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.keys import Keys, keys_of
-from cratous.core.authority.link_loss import FINISH, RETURN
+from cratous.core.authority.link_loss import FINISH
 from cratous.services.icarous_communication.listeners import FORMS, Dialects, Door, form_of
-from cratous.services.icarous_communication.returning import Place
 from cratous.services.icarous_communication.unheard import (
-    AFTER_MS,
     CHOICES,
     IN_HAND,
     LostLink,
 )
+from cratous.services.loading.lost_link_attributes import ATTRIBUTES as LOST_LINK
+from cratous.services.loading.lost_link_attributes import lost_link_attributes
 from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.spec.errors import BadInput
 
@@ -39,9 +39,7 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "PlainBeyondLoopback": flag(False),
     "RouteTimeout_s": number(2.0, 0.1, 600.0),
     "UseUxasRoutePlanner": flag(False),
-    "LostLink": choice("", "", *CHOICES),
-    "LostLinkAfter_s": number(AFTER_MS / 1000, 1.0, 3600.0),
-    "LostLinkTo": Attr(),
+    **LOST_LINK,
 }
 DEVIATION_M = 500.0
 """Deviation from its leg at which a vehicle's tasks are paused during avoidance [m]."""
@@ -196,17 +194,9 @@ def _keys(
 
 def _lost_link(entry: Entry, v: Mapping[str, Any]) -> LostLink:
     """What is flown while an instance is not heard."""
-    asked, to = CHOICES.get(v["LostLink"]), None
-    if text := v["LostLinkTo"]:
-        try:
-            to = Place(*map(float, text.split()))
-        except (TypeError, ValueError):
-            to = None
-        if asked != RETURN or to is None or not to.is_on_earth:
-            expected = 'LATITUDE LONGITUDE ALTITUDE [deg, deg, m MSL], with LostLink="return"'
-            raise entry.refusal("no place to return to", "LostLinkTo", expected, text[:80])
-    after_ms = round(1000 * v["LostLinkAfter_s"])
-    return LostLink(FINISH if asked is None else asked, after_ms, asked is None, to)
+    asked, after_ms, to = lost_link_attributes(entry, v)
+    choice = FINISH if asked is None else CHOICES[asked.value]
+    return LostLink(choice, after_ms, asked is None, to)
 
 
 def _to(entry: Entry, text: str, count: int) -> tuple[Address, ...]:

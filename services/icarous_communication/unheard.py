@@ -23,15 +23,13 @@ from cratous.services.flight.messages import Say
 from cratous.services.flight.notices import link_loss_state
 from cratous.services.icarous.messages import WithoutLink as Alone
 from cratous.services.icarous_communication.holding import Sender, Step, hold, icarous_has, off_plan
-from cratous.services.icarous_communication.returning import Place, is_there, sent, way_to
+from cratous.services.icarous_communication.returning import is_there, sent, way_to
 from cratous.services.icarous_communication.state import Out, State
+from cratous.services.loading.lost_link_attributes import AFTER_MS, Place
 from cratous.spec.authority.link_loss import NOTHING, REJOIN
 from cratous.spec.mission import Position
-from cratous.spec.mission.bridge_times import USUAL
 from cratous.spec.mission.link_loss import WithoutLink
 
-AFTER_MS = USUAL.lost_link_after_ms
-"""Silence after which the link to an instance counts as lost, if nothing else is configured [ms]."""
 CHOICES = {
     WithoutLink.FINISH.value: FINISH,
     WithoutLink.LOITER.value: LOITER,

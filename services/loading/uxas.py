@@ -7,14 +7,14 @@ has no counterpart here is refused or noted, never dropped.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from cratous.services.loading import uxas_parts as parts
 from cratous.services.loading.assignment_attributes import Settings, plans_live, settings_of
-from cratous.services.loading.checks import too_many_instances
 from cratous.services.loading.conditions import kept
 from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import item_key
@@ -24,13 +24,18 @@ from cratous.services.loading.request_kinds import WRAPPED, is_request
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
 from cratous.services.loading.uxas_frame import frame_of
+from cratous.services.loading.uxas_icarous import (
+    SERVICE,
+    WithoutIcarous,
+    instances_of,
+    without_icarous,
+)
 from cratous.services.loading.uxas_requests import request_of
 from cratous.services.loading.uxas_tasks import Interests, other
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_daa import DEFAULT_WELL_CLEAR
 from cratous.services.loading.yaml_mission import finish
 from cratous.spec.errors import BadInput
-from cratous.spec.files.limits import integer_of
 from cratous.spec.mission import (
     Daa,
     Frame,
@@ -38,10 +43,12 @@ from cratous.spec.mission import (
     Mission,
     Simulation,
     Task,
+    TimedBridgeMission,
     Vehicle,
     Zone,
     ZoneKind,
 )
+from cratous.spec.mission.bridge_times import USUAL
 
 LIMIT_MS = 86_400_000
 """UxAS has no end of the simulation: one day [ms]."""
@@ -85,7 +92,11 @@ def mission_of(
     vehicles = _vehicles(cast, request, places, sources, notes)
     tasks = _tasks(cast, request, places, vehicles, sources, notes)
     zones = _bound(cast, request, places, frame, sources, notes)
-    instances, guard_notes = _instances(cfg, vehicles)
+    instances, guard_notes = instances_of(cfg, vehicles)
+    alone = WithoutIcarous()
+    if spoken_for is None:  # planning alone does not ask for it
+        alone = without_icarous(cfg, places, instances, notes)
+        sources["link_loss"] = alone.where
     volume = DEFAULT_WELL_CLEAR
     notes.append(
         f"UxAS names no well-clear volume: DTHR {volume.dthr_m:g} m, ZTHR {volume.zthr_m:g} m, "
@@ -94,14 +105,17 @@ def mission_of(
     settings = _settings(cfg, notes)
     order = "order" if _compatible(cfg) else "time"
     folder = cfg.path.resolve().parent.name
-    live = plans_live(cfg.service("IcarousCommunicationService"))
-    mission = (LivePlanningMission if live else Mission)(
+    live = plans_live(cfg.service(SERVICE))
+    kind: Callable[..., Mission] = LivePlanningMission if live else Mission
+    if alone.times != USUAL:
+        kind = partial(TimedBridgeMission, uxas_route_planner=live, bridge=alone.times)
+    mission = kind(
         name=parts.safe_name(folder or cfg.path.stem),
         source=source,
         frame=frame,
         vehicles=vehicles,
         tasks=tasks,
-        daa=Daa(volume),
+        daa=alone.daa,
         zones=tuple(zones),
         relations=request.body.TaskRelationships.strip(),
         cost=settings.cost or "MINMAX",
@@ -363,26 +377,6 @@ def _bound(
     for k, (_, where) in enumerate(found):
         sources[f"zones[{k}]"] = where
     return [zone for zone, _ in found]
-
-
-def _instances(
-    cfg: Configuration, vehicles: tuple[Vehicle, ...]
-) -> tuple[tuple[int, ...], list[str]]:
-    ids = tuple(vehicle.id for vehicle in vehicles)
-    found = cfg.service("IcarousCommunicationService")
-    if found is None:
-        return ids, [
-            "no IcarousCommunicationService: each vehicle is protected by an instance all the same"
-        ]
-    attributes, where = found
-    text = attributes.get("NumberOfUAVs", "")
-    item = "IcarousCommunicationService.NumberOfUAVs"
-    number = integer_of(text, 0, 2**31)
-    if number is None:
-        raise BadInput("not a number", where=where, item=item, expected="a whole number", got=text)
-    if number > len(ids):
-        raise too_many_instances(number, len(ids), where, item)
-    return tuple(sorted(ids)[:number]), []
 
 
 def _compatible(cfg: Configuration) -> bool:

@@ -15,10 +15,8 @@ from cratous.services.exporting.uxas import (
     configuration_text,
     messages_text,
 )
-from cratous.services.mission.frames import Projection
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission
-from cratous.spec.mission.bridge_times import USUAL
 
 SCENARIO = "scenario.xml"
 SETS_OUT_S = 0.45
@@ -78,14 +76,6 @@ def write_configuration(
         "DeviationAllowed": "0",
         "DeviationOrigin": "path",
     }
-    if mission.link_loss is not None:
-        communication["LostLink"] = mission.link_loss.choice.value
-        communication["LostLinkAfter_s"] = f"{mission.link_loss.after_ms / 1000:g}"
-        if (to := mission.link_loss.to) is not None:
-            place = Projection(mission.frame).to_geodetic(to.north_m, to.east_m)
-            communication["LostLinkTo"] = f"{place[0]:.9f} {place[1]:.9f} {to.alt_m:.3f}"
-    elif mission.bridge_times != USUAL:
-        communication["LostLinkAfter_s"] = f"{mission.bridge_times.lost_link_after_ms / 1000:g}"
     if original:
         communication |= {"Dialect": "original", "Timeout_s": str(CLIENTS_S)}
     else:  # the keys are in the environment
