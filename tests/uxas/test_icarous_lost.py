@@ -20,11 +20,11 @@ from cratous.core.authority.link_loss import FINISH, LOITER, RETURN
 from cratous.services.flight.messages import Lost, Say
 from cratous.services.icarous_communication import holding
 from cratous.services.icarous_communication.listeners import Dialects
-from cratous.services.loading.lost_link_attributes import Place
 from cratous.services.icarous_communication.settings import ATTRIBUTES, Settings, settings_of
 from cratous.services.icarous_communication.state import State
 from cratous.services.icarous_communication.step import Communication
 from cratous.services.icarous_communication.unheard import IN_HAND, LostLink
+from cratous.services.loading.lost_link_attributes import Place
 from cratous.services.loading.uxas_settings import Entry, values_of
 from cratous.services.mission.zones import exact_leg_ok
 from cratous.spec.errors import BadInput
