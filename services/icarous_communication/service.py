@@ -42,6 +42,7 @@ from cratous.services.icarous_communication.step import (
     State,
     Step,
 )
+from cratous.services.icarous_communication.unheard import WATCH_MS
 from cratous.services.pipeline.planner import OWN_PLANNER
 from cratous.services.pipeline.status import status
 from cratous.spec.errors import CratousError
@@ -50,8 +51,6 @@ MISSION, STATE = "afrl.cmasi.MissionCommand", "afrl.cmasi.AirVehicleState"
 CONFIGURED = "afrl.cmasi.AirVehicleConfiguration"
 KEEP_IN, KEEP_OUT = "afrl.cmasi.KeepInZone", "afrl.cmasi.KeepOutZone"
 REMOVE_ZONES = "afrl.cmasi.RemoveZones"
-WATCH_MS = 500
-"""Interval of the check for silent instances [ms]."""
 MOST_VEHICLES, MOST_ZONES = 1000, PROGRAM_LIMITS.zones
 """Limits of vehicles and zones; for further ones a refusal is logged: they are not avoided."""
 MOST_EARLY = 1000

@@ -30,6 +30,8 @@ from cratous.spec.authority.link_loss import NOTHING, REJOIN
 from cratous.spec.mission import Position
 from cratous.spec.mission.link_loss import WithoutLink
 
+WATCH_MS = 500
+"""Interval of the check for silent instances [ms]."""
 CHOICES = {
     WithoutLink.FINISH.value: FINISH,
     WithoutLink.LOITER.value: LOITER,

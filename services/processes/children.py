@@ -27,6 +27,7 @@ GRACE_S = 5.0
 LAST_LINES = 8
 LOWEST, MOST_TRIED = 10_000, 100
 """Of free ports: the lowest one, and how many are tried at most."""
+_GIVEN: deque[int] = deque(maxlen=64)
 
 
 class ProcessEnded(CratousError):
@@ -50,11 +51,15 @@ class ProcessEnded(CratousError):
 
 def free_port() -> int:
     """A loopback port on which no process is listening, outside of the range from which the system chooses ports
-    (where Linux tells it): no other program's connection takes it before a process listens there.
+    (where Linux tells it): no other program's connection takes it before a process listens there. It is none of those
+    that were returned last, on which a process may be about to listen.
     """
     for _ in range(MOST_TRIED):
         with suppress(OSError), socket.create_server(("127.0.0.1", _unassigned())) as probe:
-            return int(probe.getsockname()[1])
+            port = int(probe.getsockname()[1])
+            if port not in _GIVEN:
+                _GIVEN.append(port)
+                return port
     with socket.create_server(("127.0.0.1", 0)) as probe:
         return int(probe.getsockname()[1])
 

@@ -7,9 +7,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from cratous.core.authority.timeliness import lasted
 from cratous.services.exporting.differences import apart, spelt_out
 from cratous.services.exporting.messages import Told, messages_of
-from cratous.services.icarous_communication.unheard import CHOICES
+from cratous.services.icarous_communication.unheard import CHOICES, WATCH_MS
 from cratous.services.loading import uxas_parts
 from cratous.services.loading.coordinates import Places
 from cratous.services.loading.uxas_cfg import Sent
@@ -90,6 +91,9 @@ def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, s
     deaf = loss is not None and original
     what = "the original's clients have no heartbeat, so their silence does not show"
     yield "link_loss", deaf, what, "no link_loss"
+    often = loss is not None and not lasted(0, mission.simulation.heartbeat_ms, WATCH_MS)
+    what = f"what is flown without the link begins within less than {WATCH_MS / 1000:g} s"
+    yield "simulation.heartbeat_ms", often, what, f"at least {WATCH_MS}"
     after = on_failure_of(mission) is not None
     yield "on_failure", after, "the mission says what is flown after a failure", "no on_failure"
     merges = merging_of(mission) is not None

@@ -189,6 +189,10 @@ def test_a_free_port_is_none_that_the_system_gives_to_another_program_s_connecti
         numbers = iter((ports[0], ports[1]))
         patch.setattr(children_module, "_unassigned", lambda: next(numbers))
         assert free_port() == ports[1], "where somebody listens is no free port"
+    with pytest.MonkeyPatch.context() as patch:
+        again = iter((ports[1], ports[1], ports[2]))
+        patch.setattr(children_module, "_unassigned", lambda: next(again))
+        assert free_port() == ports[2], "two processes of a flight never get the same one"
 
 
 @contextlib.contextmanager

@@ -150,6 +150,22 @@ def test_without_the_link_uxas_flies_all_but_a_landing(
     assert ("LostLinkTo" in given) == (to is not None)
 
 
+def test_a_loss_is_not_noticed_within_a_shorter_heartbeat(root: Path) -> None:
+    plain = crossing(root)
+    kept = {f.name: getattr(plain.daa, f.name) for f in fields(Daa)}
+    lost = LinkLossDaa(**kept, link_loss=LinkLoss(WithoutLink.LOITER, 7000))
+    for daa, beat_ms, refused in ((lost, 499, True), (lost, 500, False), (plain.daa, 100, False)):
+        simulation = replace(plain.simulation, heartbeat_ms=beat_ms)
+        mission = replace(plain, daa=daa, simulation=simulation)
+        if not refused:
+            told_of(mission)
+            continue
+        with pytest.raises(BadInput) as wrong:
+            told_of(mission)
+        assert wrong.value.item == "simulation.heartbeat_ms"
+        assert wrong.value.expected.startswith("at least 500")
+
+
 def test_the_silence_of_the_mission_is_told(root: Path, tmp_path: Path) -> None:
     ports, plain = Ports(1001, 1002, 1003), crossing(root)
     kept = {f.name: getattr(plain, f.name) for f in fields(Mission)}
