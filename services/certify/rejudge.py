@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Container, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from cratous.core.authority.timeliness import lasted
 from cratous.services.certify.blame import Commands, told_of
 from cratous.services.certify.command import with_original_clients
 from cratous.services.certify.differences import differences
@@ -66,7 +67,12 @@ def subject(log: Path) -> tuple[Mission, Plan]:
                 got="nothing",
             )
     try:
-        return from_data(Mission, meta["mission"]), from_data(Plan, meta["plan"])
+        mission = from_data(Mission, meta["mission"])
+        times = asdict(mission.bridge_times)
+        if not all(lasted(0, time_ms, 1) for time_ms in times.values()):
+            item, expected = "Mission.bridge", "times of more than 0 ms"
+            raise BadInput("does not fit", item=item, expected=expected, got=str(times))
+        return mission, from_data(Plan, meta["plan"])
     except BadInput as error:
         error.where = error.where or f"{log}, meta"
         raise

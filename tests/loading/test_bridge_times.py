@@ -11,6 +11,7 @@ import yaml
 from cratous.judge.fields import Node
 from cratous.judge.mission import from_log
 from cratous.judge.mission_file import read as judge_read
+from cratous.services.certify import rejudge
 from cratous.services.loading import load
 from cratous.services.logs.records import from_data, to_data
 from cratous.services.parameters.listing import parameters_of
@@ -36,6 +37,23 @@ def test_the_times_are_those_of_the_file_and_of_its_log(root: Path, tmp_path: Pa
     assert again == mission
     for judged in (judge_read(path), from_log(Node(to_data(mission), "log", "mission"))):
         assert (judged.lost_link_after_ms, judged.safe_state_after_ms) == (2500, 45_000)
+
+
+@pytest.mark.parametrize("name", ["lost_link_after_ms", "safe_state_after_ms"])
+@pytest.mark.parametrize("time_ms", [-1, 0])
+def test_a_log_with_times_that_are_none_is_refused(
+    root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, time_ms: int
+) -> None:
+    path = written(root, tmp_path, bridge={"lost_link_after_s": 2.5, "safe_state_after_s": 45})
+    mission = to_data(load(path))
+    meta = {"mission": {**mission, "bridge": {**mission["bridge"], name: time_ms}}, "plan": {}}
+    monkeypatch.setattr(rejudge, "read_meta", lambda log: meta)
+    with pytest.raises(BadInput) as wrong:
+        rejudge.subject(tmp_path / "log.jsonl")
+    assert (wrong.value.item, wrong.value.expected) == ("Mission.bridge", "times of more than 0 ms")
+    assert "log.jsonl, meta" in wrong.value.where
+    with pytest.raises(BadInput, match=name):
+        from_log(Node(meta["mission"], "log", "mission"))
 
 
 def test_a_mission_without_them_is_the_one_that_it_was(root: Path, tmp_path: Path) -> None:
