@@ -152,41 +152,27 @@ def _course_rad(v: Velocity) -> float:
     return math.atan2(v.east_m_s, v.north_m_s)
 
 
-class Timed(NamedTuple):
-    """A whole leg at some speed: its velocity, how long it is flown [s], and the changes of position by then [m]."""
-
-    velocity: Velocity
-    flown_s: float
-    north_m: float
-    east_m: float
-    up_m: float
-
-
-MOST_TIMED = 64
+Timed = tuple[Velocity, float, float, float, float]
+"""A leg at some speed: its velocity, how long it is flown [s], and the changes to north, east and up by then [m]."""
+MOST_TIMED = 500
 _timed: dict[tuple[int, float], tuple[Track, list[Timed | None]]] = {}
 """Legs of routes by identity of the route and speed: at each heartbeat the same legs are flown again."""
 
 
 def _legs_at(track: Track, speed: float) -> list[Timed | None]:
-    """The legs of a track at a speed, as far as they are known; to be filled in."""
+    """The legs of a track at a speed, as far as they are known; to be filled in. Empty the first time: a speed that is
+    sensed is hardly ever asked for again.
+    """
     known = _timed.get((id(track), speed))
-    if known is not None and known[0] is track:
-        return known[1]
-    legs: list[Timed | None] = [None] * len(track.directions)
-    if len(_timed) >= MOST_TIMED:
-        _timed.clear()
-    _timed[id(track), speed] = track, legs
+    if known is None or known[0] is not track:
+        if len(_timed) >= MOST_TIMED:
+            del _timed[next(iter(_timed))]
+        _timed[id(track), speed] = track, []
+        return []
+    legs = known[1]
+    if not legs:
+        legs += [None] * len(track.directions)
     return legs
-
-
-def _timed_leg(track: Track, leg: int, from_m: float, speed: float) -> Timed:
-    """A leg from an arc length [m] to its end."""
-    a, b, (north, east) = track.points[leg], track.points[leg + 1], track.directions[leg]
-    flown_s = (track.s_m[leg + 1] - from_m) / speed
-    leg_s = math.hypot(b[0] - a[0], b[1] - a[1]) / speed
-    down, north_m_s, east_m_s = (a[2] - b[2]) / leg_s, north * speed, east * speed
-    v = Velocity(north_m_s, east_m_s, down)
-    return Timed(v, flown_s, north_m_s * flown_s, east_m_s * flown_s, -(down * flown_s))
 
 
 def _along(
@@ -203,12 +189,18 @@ def _along(
     legs = _legs_at(track, speed)
     # as Piece(...) and so on, in a third of the time: a path of many legs is made at each heartbeat
     new = tuple.__new__
+    points, s_m, directions = track.points, track.s_m, track.directions
     for k in range(first - 1, last):
-        timed = legs[k]
-        if k < first:  # it has begun
-            timed = _timed_leg(track, k, at_m, speed)
-        elif timed is None:
-            timed = legs[k] = _timed_leg(track, k, track.s_m[k], speed)
+        whole = k >= first  # the first leg has begun
+        timed = legs[k] if legs and whole else None
+        if timed is None:
+            a, b, (north, east) = points[k], points[k + 1], directions[k]
+            flown_s = (s_m[k + 1] - (s_m[k] if whole else at_m)) / speed
+            leg_s = math.hypot(b[0] - a[0], b[1] - a[1]) / speed
+            v = new(Velocity, (north * speed, east * speed, (a[2] - b[2]) / leg_s))
+            timed = v, flown_s, v[0] * flown_s, v[1] * flown_s, -(v[2] * flown_s)
+            if legs and whole:
+                legs[k] = timed
         v, flown_s, north, east, up = timed
         pieces.append(new(Piece, (t_s, flown_s, new(Position, (north_m, east_m, alt_m)), v)))
         north_m, east_m, alt_m, t_s = north_m + north, east_m + east, alt_m + up, t_s + flown_s

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import gc
 import json
 import shutil
 import sqlite3
@@ -16,6 +18,9 @@ import pytest
 
 from cratous import __version__
 from cratous.services.cli import COMMANDS, main
+from cratous.services.cli import run as running
+from cratous.services.cli.job import Settings
+from cratous.spec.errors import BadInput
 
 ROOT = Path(__file__).resolve().parents[2]
 CROSSING = ROOT / "examples" / "crossing" / "mission.yaml"
@@ -34,6 +39,25 @@ def flown(fly_once: Callable[[Path], Path]) -> Path:
 
 def report_of(folder: Path) -> dict[str, Any]:
     return dict(json.loads((folder / "report.json").read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize("ends", [None, BadInput("wrong"), KeyboardInterrupt()])
+def test_after_a_flight_garbage_is_collected_as_before(
+    ends: BaseException | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before, meanwhile = gc.get_threshold(), []
+
+    def fly(*_: object) -> dict[str, Any]:
+        meanwhile.append(gc.get_threshold()[0])
+        if ends is not None:
+            raise ends
+        return {}
+
+    monkeypatch.setattr(running, "run_mission", fly)
+    with pytest.raises(type(ends)) if ends is not None else contextlib.nullcontext():
+        running.run_one(CROSSING, 0, tmp_path, Settings(), lambda _text: None)
+    assert meanwhile == [running.COLLECTED_AT]
+    assert gc.get_threshold() == before
 
 
 def test_version(run: Run) -> None:

@@ -21,7 +21,9 @@ from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.manoeuvre import way_along
 from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s, later, meetings
 from cratous.core.permit.remainder import hold_at, hold_permits, way_permits
+from cratous.core.routing.polylines import Track
 from cratous.services.flight.link_lines import way_of_another
+from cratous.services.icarous import other_vehicles
 from cratous.services.icarous.inbox import MOST_OTHERS, Told, hear
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Sensed
@@ -177,6 +179,28 @@ def test_at_each_heartbeat_and_speed_it_is_predicted_on_the_same_way() -> None:
         assert [p.position for p in one.way] == [
             pytest.approx(p) for p in (place, (2000, 0, 300), (3000, 0, 330))
         ]
+
+
+def test_legs_of_many_routes_are_kept_and_those_at_changing_speeds_are_not() -> None:
+    tracks = [Track(tuple(p._replace(alt_m=300.0 + k) for p in CORNER)) for k in range(90)]
+
+    def flown(beats: int, faster_m_s: float) -> list[list[tuple[Piece, ...]]]:
+        return [
+            [other_vehicles._along(one, 10.0, at(20.0 + beat * faster_m_s)) for one in tracks]
+            for beat in range(beats)
+        ]
+
+    def at(speed: float) -> Intruder:
+        return EAST._replace(velocity=Velocity(0.0, speed, 0.0))
+
+    first, second, third = flown(3, 0.0)
+    assert first == second == third
+    for one, other in zip(second, third, strict=True):
+        assert one[1].velocity is other[1].velocity, "it was timed again"
+    flown(10, 0.1)
+    known = other_vehicles._timed
+    assert len(known) == other_vehicles.MOST_TIMED
+    assert not any(legs for (_, speed), (_, legs) in known.items() if speed != 20.0)
 
 
 @pytest.mark.parametrize(

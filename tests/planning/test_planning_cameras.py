@@ -1,11 +1,13 @@
 """Cameras in planning: footprints, gimbals, coverage, and paths for a wanted view."""
 
 import math
+from dataclasses import replace
 
 import pytest
-from planning_tools import CAMERA, TWO, assert_turns_wide, mission, task
+from planning_tools import CAMERA, TWO, assert_turns_wide, mission, task, vehicle
 
 from cratous.services.mission.sensor import coverage, footprint, sees
+from cratous.services.planning import options as planned
 from cratous.services.planning.options import expand
 from cratous.services.planning.smoothing import line_path
 from cratous.spec.mission import Camera, Position, TaskKind, View
@@ -86,3 +88,65 @@ def test_the_view_of_a_point_is_from_the_wanted_side():
         bearing = math.atan2(-middle.east_m, 2000.0 - middle.north_m)
         turn = math.remainder(bearing - option.start.heading_rad, 2 * math.pi)
         assert turn == pytest.approx(math.pi / 2, abs=1e-9)
+
+
+SEARCHED = (
+    task(1, TaskKind.POINT_SEARCH, (2000.0, 0.0, 0.0), gsd_m=2.0, wavelength="EO"),
+    task(2, TaskKind.LINE_SEARCH, (0.0, 500.0, 0.0), (900.0, 500.0, 0.0), view=DOWN_LEFT),
+    task(
+        3, TaskKind.AREA_SEARCH, *((n, e, 0.0) for n, e in ((0, 0), (0, 500), (500, 500), (500, 0)))
+    ),
+)
+FIRST = vehicle(1, 0.0, 0.0, cameras=(replace(CAMERA, wavelength="EO", pixels=400),))
+(SEES,) = FIRST.cameras
+COARSE = replace(SEES, pixels=100)
+OTHERS = {
+    "hfov_rad": replace(SEES, hfov_rad=0.5),
+    "aspect": replace(SEES, aspect=1.0),
+    "min_elevation_rad": replace(SEES, min_elevation_rad=-1.0),
+    "max_elevation_rad": replace(SEES, max_elevation_rad=-1.5),
+    "azimuth_rad": replace(SEES, min_azimuth_rad=0.0, max_azimuth_rad=0.0),
+    "wavelength": replace(SEES, wavelength="LWIR"),
+    "pixels": COARSE,
+    "zoom_rad": replace(COARSE, zoom_rad=(0.1,)),
+}
+
+
+def ways(options, vehicle_id):
+    """What is offered to a vehicle, but for the numbers of the options."""
+    return [replace(one, option_id=0) for one in options if vehicle_id in one.vehicles]
+
+
+def test_vehicles_that_differ_in_the_ids_of_cameras_share_what_is_computed(monkeypatch):
+    asked = []
+    really = planned._options
+    monkeypatch.setattr(planned, "_options", lambda *given: asked.append(given) or really(*given))
+    other = vehicle(2, 0.0, 3000.0, cameras=(replace(SEES, payload_id=7, camera_id=8),))
+    both, dropped = expand(mission(SEARCHED, (FIRST, other)), SEARCHED, ())
+    assert len(asked) == len(SEARCHED)
+    for one in (FIRST, other):
+        assert {option.flyer.cameras for option in ways(both, one.id)} == {one.cameras}
+        alone, not_offered = expand(mission(SEARCHED, (one,)), SEARCHED, ())
+        assert ways(both, one.id) == ways(alone, one.id)
+        assert [d for d in dropped if one.id in d.vehicles] == list(not_offered)
+    assert {option.task_id for option in both} == {1, 2, 3}
+
+
+@pytest.mark.parametrize("what", [*OTHERS, "speed_m_s", "cruise", "max_bank_rad"])
+def test_a_vehicle_that_differs_in_anything_else_has_options_of_its_own(what):
+    other = vehicle(2, 0.0, 3000.0, cameras=(OTHERS.get(what, SEES),))
+    if what == "cruise":
+        other = vehicle(2, 0.0, 3000.0, alt=650.0, cameras=(SEES,))
+    elif what not in OTHERS:
+        other = replace(other, **{what: 0.9 * getattr(other, what)})
+    first = replace(FIRST, cameras=(COARSE,)) if what == "zoom_rad" else FIRST
+    both, dropped = expand(mission(SEARCHED, (first, other)), SEARCHED, ())
+    for one in (first, other):
+        alone, not_offered = expand(mission(SEARCHED, (one,)), SEARCHED, ())
+        assert ways(both, one.id) == ways(alone, one.id)
+        assert [d for d in dropped if one.id in d.vehicles] == list(not_offered)
+    offered = [
+        [(o.task_id, o.path, o.duration_ms, o.view_elevation_rad) for o in ways(both, number)]
+        for number in (1, 2)
+    ]
+    assert offered[0] != offered[1], "it would not be noticed if it had the other's"
