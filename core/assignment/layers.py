@@ -44,6 +44,8 @@ CHUNK = 32
 """Rows of a layer expanded between two calls of `stop`."""
 ROOM_BYTES = 50_000_000
 """Memory limit of the states of one layer."""
+KEPT_BYTES = 50_000_000
+"""Memory limit of the results that are kept."""
 
 
 @dataclass(frozen=True)
@@ -120,12 +122,13 @@ def shortest(instance: Instance, may: np.ndarray) -> np.ndarray:
 
 class _Found:
     """Cache of the latest results, keyed by all arrays on which they depend: a planner asks many questions about the
-    same instance.
+    same instance. most: results kept, of KEPT_BYTES together; a larger one is not kept.
     """
 
     def __init__(self, most: int) -> None:
         self._most = most
         self._made: dict[bytes, tuple[np.ndarray, ...]] = {}
+        self._bytes = 0
 
     def of(self, given: Sequence[np.ndarray]) -> tuple[np.ndarray, ...] | None:
         """The stored arrays for these; None if there are none."""
@@ -134,18 +137,29 @@ class _Found:
 
     def put(self, given: Sequence[np.ndarray], made: Sequence[np.ndarray]) -> None:
         """Store what was computed, and checked, from these; the oldest are dropped."""
-        while len(self._made) >= self._most:
-            del self._made[next(iter(self._made))]
-        self._made[_key(given)] = tuple(array.copy() for array in made)
+        key, size = _key(given), sum(array.nbytes for array in made)
+        if size > KEPT_BYTES:
+            return
+        self._drop(key)
+        while self._made and (len(self._made) >= self._most or self._bytes + size > KEPT_BYTES):
+            self._drop(next(iter(self._made)))
+        self._made[key] = tuple(array.copy() for array in made)
+        self._bytes += size
 
     def forget_all(self) -> None:
         """Clear the cache."""
         self._made.clear()
+        self._bytes = 0
+
+    def _drop(self, key: bytes) -> None:
+        self._bytes -= sum(array.nbytes for array in self._made.pop(key, ()))
 
 
 def _key(given: Sequence[np.ndarray]) -> bytes:
-    shapes = repr([(array.shape, array.dtype.char) for array in given])
-    return hashlib.sha256(b"".join([shapes.encode(), *(a.tobytes() for a in given)])).digest()
+    digest = hashlib.sha256(repr([(array.shape, array.dtype.char) for array in given]).encode())
+    for array in given:
+        digest.update(np.ascontiguousarray(array).data)
+    return digest.digest()
 
 
 _FOUND, _AHEAD = _Found(64), _Found(16)

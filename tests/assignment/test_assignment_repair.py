@@ -183,6 +183,24 @@ def test_ways_of_large_assignments_are_not_kept(monkeypatch: pytest.MonkeyPatch)
     assert kept._made == {}
 
 
+def test_what_is_kept_has_a_limit_in_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(layers, "KEPT_BYTES", 100)
+    kept = layers._Found(16)
+    keys = [np.full(2, k) for k in range(6)]
+    for key in keys:
+        kept.put((key,), (np.zeros(5, np.int64),))  # 40 bytes
+    assert [kept.of((key,)) is not None for key in keys] == [False] * 4 + [True] * 2
+    kept.put((keys[5],), (np.ones(10, np.int64),))  # what is kept anew takes no place twice
+    assert [kept.of((key,)) is not None for key in keys] == [False] * 5 + [True]
+    kept.put((keys[0],), (np.zeros(13, np.int64),))
+    assert kept.of((keys[0],)) is None, "larger than all that may be kept"
+    (found,) = kept.of((keys[5],)) or ()
+    assert (found == 1).all()
+    kept.forget_all()
+    kept.put((keys[1],), (np.zeros(12, np.int64),))
+    assert kept.of((keys[1],)) is not None
+
+
 def test_vehicles_without_work_are_no_bound() -> None:
     i = arrays_of(problem(4, 2))
     assert least_until(0, i.ready) == -1
