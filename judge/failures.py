@@ -129,12 +129,14 @@ def _flown(
 
 
 def _without_link(mission: Mission, one: Alone, mode: str, had: bool) -> Iterator[tuple[int, str]]:
-    """Faults of what is flown before any failure: the known way, then a circle, without the link.
+    """Faults of what is flown before any failure: the known way, then a circle, without the link. A vehicle that senses
+    or merges flies nothing by itself then.
 
     had: whether ICAROUS had the vehicle.
     """
     silent_ms = one.time_ms - one.heard_ms
-    if one.chosen != FINISH or one.mode not in follows(mode, FINISH):
+    nothing = mission.senses or mission.fix is not None
+    if nothing or one.chosen != FINISH or one.mode not in follows(mode, FINISH):
         yield one.time_ms, f"{one.mode} is flown, and no failure had been declared"
     elif one.mode != LINKED and silent_ms <= mission.lost_link_after_ms:
         yield one.time_ms, f"{one.mode} after a silence of {silent_ms} ms"

@@ -144,6 +144,36 @@ def test_what_is_flown_without_the_link_before_a_failure(
     assert verdicts(mission, tmp_path, *said) == (expected, expected)
 
 
+SENSING = {"sensors": [{"kind": "adsb", "horizontal_m": 8, "vertical_m": 6, "velocity_m_s": 0.8}]}
+MERGING = {
+    "fix": {"name": "gate", "position": {"north_m": 3000, "east_m": 0, "alt_m": 300}},
+    "vehicles": [1, 2], "coordination_m": 2500, "schedule_m": 1500, "entry_m": 300,
+}  # fmt: skip
+CLOSE = {"well_clear": {"dthr_m": 150, "zthr_m": 30, "tthr_s": 5, "tcoa_s": 0}, "lookahead_s": 30}
+SILENT = {"choice": "finish", "after_s": 3}
+
+
+@pytest.mark.parametrize(
+    ("sections", "expected"),
+    [
+        ({"sensing": SENSING}, BAD),
+        ({"merging": MERGING, "daa": CLOSE}, BAD),
+        # the mission's own procedure has a row of its own
+        ({"sensing": SENSING, "link_loss": SILENT}, GOOD),
+    ],
+)
+def test_vehicles_that_sense_or_merge_fly_nothing_without_the_link_before_a_failure(
+    root: Path, sections: dict[str, Any], expected: str, tmp_path: Path
+) -> None:
+    other = {"id": 2, "position": {"north_m": 0, "east_m": 2000, "alt_m": 300}}
+    after = {"choice": "hold"}
+    mission = mission_of(root, tmp_path, other, on_failure=after, landing_sites=None, **sections)
+    assert verdicts(mission, tmp_path, TAKEN, FLIES_ON) == (expected, expected)
+    anew = (TAKEN, MISSING, FLIES_ON, declared("Expiring", 50_000), holds_from(50_000))
+    assert verdicts(mission, tmp_path, *anew) == (expected, expected)
+    assert verdicts(mission, tmp_path, *BLOCKED) == (GOOD, GOOD)
+
+
 @pytest.mark.parametrize(
     ("said", "note"),
     [
