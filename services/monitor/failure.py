@@ -160,7 +160,8 @@ class FailureWatch(LinkLossWatch):
             # whether the vehicle was out of ICAROUS's hand meanwhile, which counts as heard, is seen by its gate
             for heard_ms in ((body.Heard,) if _flies(told) else (body.Heard, now_ms))
         }
-        if self._merges_or_senses or mode not in may or int(body.Chosen) != FINISH:
+        strange = mode not in may or mode == told.loss.mode or int(body.Chosen) != FINISH
+        if self._merges_or_senses or strange:
             told.wrong.append((now_ms, f"{body.Mode.name} is not what follows then"))
         elif not _flies(told) and mode != LINKED:
             told.wrong.append((now_ms, f"{body.Mode.name} is flown, and UxAS has it"))

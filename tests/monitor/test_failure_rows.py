@@ -102,6 +102,9 @@ EXPIRING = (TAKEN, MISSING, declared("Expiring"), holds_from())
         ((*BLOCKED, holds_from(20_000)), BAD),
         ((*BLOCKED, says("Linked", 20_000, Chosen="Loiter", Heard=20_000)), BAD),
         ((*BLOCKED, says("Landed", 20_000, Chosen="Loiter")), BAD),
+        # said at the same instant, but before the failure
+        ((TAKEN, MISSING, holds_from(), declared("Expiring")), BAD),
+        ((TAKEN, MISSING, holds_from(), declared("Expiring"), holds_from()), BAD),
     ],
 )  # fmt: skip
 def test_a_failure_and_what_is_flown_then(
@@ -131,6 +134,9 @@ FLIES_ON = says("Finish", 40_000, Heard=9999)
         ((TAKEN, says("Over", 40_000, Heard=9999)), BAD),
         ((TAKEN, says("Finish", 40_000, Heard=9999, Chosen="Loiter")), BAD),
         ((TAKEN, FLIES_ON, says("Land", 50_000, Heard=9999)), BAD),
+        # what is flown already does not begin
+        ((TAKEN, FLIES_ON, says("Finish", 50_000, Heard=9999)), BAD),
+        ((TAKEN, says("Linked", 5500, Heard=5500)), BAD),
         ((FLIES_ON,), BAD),
         ((TAKEN, gate("UxAS", 20_000), FLIES_ON), BAD),
         # a failure begins what is flown anew
@@ -172,6 +178,34 @@ def test_vehicles_that_sense_or_merge_fly_nothing_without_the_link_before_a_fail
     anew = (TAKEN, MISSING, FLIES_ON, declared("Expiring", 50_000), holds_from(50_000))
     assert verdicts(mission, tmp_path, *anew) == (expected, expected)
     assert verdicts(mission, tmp_path, *BLOCKED) == (GOOD, GOOD)
+
+
+ENDS_IT = (*ENDED[:2], holds_from())
+TELLS_LATE = says("Finish", 10_000, Heard=2000)
+"""It began 8 s after UxAS was last heard, where 3 s were asked for."""
+DOWN = message("BridgeStatus", 0, VehicleID=1, Alive=False, Note="link lost: closed")
+AT_ONCE = (declared("Ended", 0), gate("ICAROUS", 0), holds_from(0))
+
+
+@pytest.mark.parametrize(
+    ("said", "expected"),
+    [
+        (ENDS_IT, GOOD),
+        # at the instant of the failure: before it what is said counts here, and not after it
+        ((TELLS_LATE, *ENDS_IT), BAD),
+        ((*ENDED[:2], TELLS_LATE), GOOD),
+        ((DOWN, *ENDS_IT), BAD),
+        ((DOWN, *AT_ONCE), GOOD),
+    ],
+)
+def test_the_row_on_the_link_goes_up_to_the_failure(
+    root: Path, said: tuple[Any, ...], expected: str, tmp_path: Path
+) -> None:
+    after = {"choice": "hold"}
+    mission = mission_of(root, tmp_path, on_failure=after, landing_sites=None, link_loss=SILENT)
+    log = log_of({}, *said, end_ms=END_MS, outcome="failed")
+    row = "what vehicle 1 flies without the link"
+    assert both_of(mission, log, row, tmp_path) == (expected, expected)
 
 
 @pytest.mark.parametrize(
@@ -230,6 +264,7 @@ def test_what_is_not_whole_is_unknown(mission: Mission, tmp_path: Path) -> None:
     assert verdicts(mission, tmp_path, ends=False) == ("unknown", "unknown")
     assert verdicts(mission, tmp_path, *BLOCKED[:2], ends=False) == ("unknown", "unknown")
     assert verdicts(mission, tmp_path, *ENDED[::2], ends=False) == ("unknown", "unknown")
+    assert verdicts(mission, tmp_path, *BLOCKED[:-1], ends=False) == ("unknown", "unknown")
     # what is wrong is wrong without an end
     assert verdicts(mission, tmp_path, TAKEN, *ENDED, ends=False) == (BAD, BAD)
 
