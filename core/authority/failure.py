@@ -76,11 +76,7 @@ def heard_by(failure: Failure, heard: int) -> int:
     return -4611686018427387904
 
 
-@kernel(
-    implements="authority.failure.is_procedure",
-    restates="which of two procedures is flown; that the loss of the link declares no failure, and that a failure ends the"
-    " procedure without the link, is proved of it",
-)
+@kernel(implements="authority.failure.is_procedure")
 def procedure(failure: Failure, without_link: int, after_failure: int) -> int:
     """What is flown by itself: without_link, the mission's choice without the link, until a failure is declared, then
     after_failure, its choice after that, for good.

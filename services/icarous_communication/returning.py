@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.kernel import Vec2
+from cratous.core.tasks.stations import in_ring
 from cratous.services.flight.messages import Say
 from cratous.services.flight.rejoining import Router
 from cratous.services.icarous.return_to_path import bearing_rad
@@ -61,9 +62,9 @@ def way_to(state: State, vid: int, to: Place | None) -> tuple[Position, ...]:
         way = Router(tuple(zones)).way_to(craft.air, turn_radius_of(craft, craft.air), end)
     except (CratousError, MemoryError):
         return ()
-    here = craft.air.position
-    ahead = tuple(p for k, p in enumerate(way) if k or math.dist(p[:2], here[:2]) > HERE_M)
-    return ahead or tuple(way)
+    here = Vec2(*craft.air.position[:2])
+    begun = bool(way) and in_ring(Vec2(*way[0][:2]), here, 0.0, HERE_M)
+    return tuple(way[1:] if begun else way) or tuple(way)
 
 
 def is_there(state: State, vid: int, to: Place | None) -> bool:

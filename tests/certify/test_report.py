@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -376,16 +375,6 @@ def test_a_requirement_without_margins_is_told_by_what_most_was_seen_for() -> No
     for one, checks in zip(rows, (3, 158, 4), strict=True):
         one["margin"], one["checks"], one["note"] = None, checks, f"{checks} checks"
     assert requirement_rows(rows)[3]["note"] == "158 checks"
-
-
-def test_dark_colours_are_for_screens_alone() -> None:
-    station = files("cratous.services.ground_station").joinpath("page", "station.css").read_text()
-    for sheet, dark in (
-        (render(report()), "@media screen and (prefers-color-scheme: dark) {"),
-        (station, "@media screen { :root.dark {"),
-    ):
-        assert sheet.count(dark) == 1
-        assert not re.search(r"prefers-color-scheme: dark|:root\.dark", sheet.replace(dark, ""))
 
 
 def test_paper_has_the_answer_and_the_inventory_only_when_asked_for() -> None:

@@ -32,6 +32,19 @@ def _authority(document: str, vehicle: int) -> str:
     return " ".join(_text(rows[1]).split())
 
 
+def test_dark_colours_are_for_screens_alone() -> None:
+    for sheet, dark in (
+        (PAGE / "station.css", "@media screen { :root.dark {"),
+        (
+            PAGE.parents[1] / "certify" / "report.css",
+            "@media screen and (prefers-color-scheme: dark) {",
+        ),
+    ):
+        text = sheet.read_text()
+        assert text.count(dark) == 1
+        assert not re.search(r"prefers-color-scheme: dark|:root\.dark", text.replace(dark, ""))
+
+
 @pytest.mark.slow
 def test_an_address_opens_the_run_at_its_instant(crossing: Path, tmp_path: Path) -> None:
     """In the takeover, before it and after it."""
