@@ -94,9 +94,13 @@ class FailureWatch(LinkLossWatch):
         told = self._seen.get(body.VehicleID)
         if told is None:
             return
-        told.gate = reported(body)
-        if told.failure.kind != NONE and not _flies(told):
+        had, told.gate = _flies(told), reported(body)
+        if told.failure.kind == NONE:
+            return
+        if not _flies(told):
             told.wrong.append((body.Time, "UxAS got it back after a declared failure"))
+        elif not had and lasted(told.failure.since_ms, body.Time, 1):
+            told.wrong.append((body.Time, "ICAROUS got it later than the failure was declared"))
 
     def declared(self, body: Any) -> None:
         """Process a FailureState."""

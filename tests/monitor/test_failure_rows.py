@@ -77,6 +77,7 @@ EXPIRING = (TAKEN, MISSING, declared("Expiring"), holds_from())
         ((TAKEN, gate("UxAS", 6000), *ENDED[::2]), BAD),
         ((*BLOCKED, gate("ICAROUS", 20_000), gate("UxAS", 20_500, 2)), GOOD),
         (ENDED[::2], BAD),
+        ((*ENDED[::2], gate("ICAROUS", 10_001)), BAD),
         ((*ENDED, gate("UxAS", 20_000)), BAD),
         ((*ENDED, gate("UxAS", 20_000), gate("ICAROUS", 21_000)), BAD),
         # certificates were there until less than four heartbeats before
