@@ -20,10 +20,11 @@ class AfterFailure(NamedTuple):
 
 
 class Declared(NamedTuple):
-    """A vehicle's report of a failure."""
+    """A vehicle's report of a failure. said: number of its reports of what it flies by itself before this one."""
 
     time_ms: int
     failure: str
+    said: int
 
 
 def after_failure(data: Node) -> AfterFailure:
@@ -40,5 +41,6 @@ def read_hand(log: Any, body: Node, _time_ms: int) -> None:
 
 def read_declared(log: Any, body: Node, _time_ms: int) -> None:
     """Add a `FailureState` to the log's extract."""
-    said = Declared(body["Time"].whole, body["Failure"].one_of(*NAMES))
-    log.declared.setdefault(body["VehicleID"].whole, []).append(said)
+    vehicle, failure = body["VehicleID"].whole, body["Failure"].one_of(*NAMES)
+    said = Declared(body["Time"].whole, failure, len(log.alone.get(vehicle, [])))
+    log.declared.setdefault(vehicle, []).append(said)

@@ -38,6 +38,8 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         owners = [g for g in log.gates if (g.vehicle, g.kind) == (vehicle, "state")]
         faults = [*_declared(mission, asked, log, vehicle)]
         faults += _flown(mission, asked, declared, said, owners)
+        if log.end_ms is not None and declared and declared[0].said == len(said):
+            faults.append((declared[0].time_ms, "nothing was flown after the failure"))
         faults += _kept(log, vehicle, declared)
         if log.end_ms is not None:
             faults += landing_faults(mission, flown, vehicle, said, log.end_ms)
@@ -68,7 +70,7 @@ def _declared(
     for one in said:
         if one.failure not in asked.of:
             yield one.time_ms, f"{one.failure} is declared, about which the mission does not ask"
-        modes = [flies.mode for flies in log.alone.get(vehicle, []) if flies.time_ms < one.time_ms]
+        modes = [flies.mode for flies in log.alone.get(vehicle, [])[: one.said]]
         if modes and modes[-1] in (FINAL, LANDED):
             yield one.time_ms, f"{one.failure} is declared after {modes[-1]}"
         owners = [g.side for g in log.gates if (g.vehicle, g.kind) == (vehicle, "state")
@@ -103,13 +105,12 @@ def _flown(
     said: list[Alone],
     owners: list[Gate],
 ) -> Iterator[tuple[int, str]]:
-    """Reports of what is flown that are impossible, or missing. The mission's procedure without the link has a row of
+    """Reports of what is flown that are impossible, or late. The mission's procedure without the link has a row of
     its own. owners: who had the vehicle, by its gate.
     """
-    at_ms, mode = (declared[0].time_ms if declared else None), LINKED
-    begun = False
-    for one in said:
-        if at_ms is None or one.time_ms < at_ms:
+    first, mode, begun = (declared[0].said if declared else len(said)), LINKED, False
+    for k, one in enumerate(said):
+        if k < first:
             if mission.without_link is None:
                 had = [gate.side for gate in owners if gate.time_ms <= one.time_ms]
                 yield from _without_link(mission, one, mode, had[-1:] == [ICAROUS])
@@ -123,18 +124,19 @@ def _flown(
         if one.mode not in follows(mode, asked.choice) or one.mode == LINKED:
             yield one.time_ms, f"{one.mode} does not follow {mode}"
         mode = one.mode
-    after = [one for one in said if at_ms is not None and one.time_ms >= at_ms]
-    if at_ms is not None and (not after or after[0].time_ms != at_ms):
-        yield at_ms, "nothing was flown from when the failure was declared"
+    if said[first:] and said[first].time_ms != declared[0].time_ms:
+        yield declared[0].time_ms, "nothing was flown from when the failure was declared"
 
 
 def _without_link(mission: Mission, one: Alone, mode: str, had: bool) -> Iterator[tuple[int, str]]:
-    """Faults of what is flown before any failure: the known way, then a circle, without the link.
+    """Faults of what is flown before any failure: the known way, then a circle, without the link. A vehicle that senses
+    or merges flies nothing by itself then.
 
     had: whether ICAROUS had the vehicle.
     """
     silent_ms = one.time_ms - one.heard_ms
-    if one.chosen != FINISH or one.mode not in follows(mode, FINISH):
+    nothing = mission.senses or mission.fix is not None
+    if nothing or one.chosen != FINISH or one.mode not in follows(mode, FINISH):
         yield one.time_ms, f"{one.mode} is flown, and no failure had been declared"
     elif one.mode != LINKED and silent_ms <= mission.lost_link_after_ms:
         yield one.time_ms, f"{one.mode} after a silence of {silent_ms} ms"

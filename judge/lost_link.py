@@ -31,7 +31,7 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         said, place = log.alone.get(vehicle, []), down(mission, vehicle, flown.get(vehicle))
         failed_ms = _failed_ms(mission, log, vehicle)
         if failed_ms is not None:
-            said = [one for one in said if one.time_ms < failed_ms]
+            said = said[: log.declared[vehicle][0].said]
         faults = [*_faults(mission, asked, said), *_missed(mission, asked, log, vehicle, said)]
         if failed_ms is not None:
             pass  # how it ends is judged in the row on the failure
@@ -110,7 +110,8 @@ def _missed(
     """Connections that had been down for too long without a report."""
     since: int | None = None
     changes = [(s.time_ms, s.alive, s.lost) for s in log.bridges.get(vehicle, [])]
-    end_ms = _failed_ms(mission, log, vehicle) or log.end_ms
+    failed_ms = _failed_ms(mission, log, vehicle)
+    end_ms = log.end_ms if failed_ms is None else failed_ms
     changes = [one for one in changes if end_ms is None or one[0] <= end_ms]
     changes += [] if end_ms is None else [(end_ms, True, False)]
     for at_ms, alive, lost in changes:

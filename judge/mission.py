@@ -120,8 +120,8 @@ class Volume(NamedTuple):
 
 @dataclass(frozen=True)
 class Mission:
-    """The whole mission. lost, joins, added, removed: times by id [ms]; terrain_m: ground outside the sites;
-    lost_link_after_ms: silence after which a vehicle is without the link; safe_state_after_ms: how long it circles then."""
+    """The whole mission. lost, joins, added, removed: times by id [ms]; terrain_m: ground outside the sites; senses: by
+    sensors; lost_link_after_ms: silence after which the link is lost; safe_state_after_ms: how long it circles then."""
 
     name: str
     latitude_deg: float
@@ -145,6 +145,7 @@ class Mission:
     without_link: WithoutLink | None = None
     after_failure: AfterFailure | None = None
     fix: Fix | None = None
+    senses: bool = False
     lost_link_after_ms: int = 30_000
     safe_state_after_ms: int = 120_000
 
@@ -189,8 +190,7 @@ def away_because(said: Said, number: int, at_ms: int) -> str:
 def from_log(data: Node) -> Mission:
     """The mission in a log's meta data; BadInput if it is invalid."""
     frame, simulation, daa = data["frame"], data["simulation"], data["daa"]["well_clear"]
-    zones = [zone(z) for z in data["zones"]]
-    said, ends = [], []
+    zones, said, ends = [zone(z) for z in data["zones"]], [], []
     for change in data["changes"]:
         kind, at = change["kind"].one_of(*CHANGES), _not_negative(change["at_ms"])
         if kind == "zone":
@@ -233,6 +233,7 @@ def from_log(data: Node) -> Mission:
         without_link=without_link,
         after_failure=after_failure(data["daa"]["on_failure"]) if failing else None,
         fix=fix_of(data["daa"]["merging"]) if data["daa"].has("merging") else None,
+        senses=data["daa"].has("sensing"),
         lost_link_after_ms=positive(data.get("bridge", {}).get("lost_link_after_ms", 30_000)),
         safe_state_after_ms=positive(data.get("bridge", {}).get("safe_state_after_ms", 120_000)),
     )

@@ -113,6 +113,7 @@ class _Reader:
             without_link=without_link,
             after_failure=after_failure(root["on_failure"]) if root.has("on_failure") else None,
             fix=self.fix(root["merging"]) if root.has("merging") else None,
+            senses=root.has("sensing"),
             lost_link_after_ms=_ms(bridge.get("lost_link_after_s", 30)),
             safe_state_after_ms=_ms(bridge.get("safe_state_after_s", 120)),
         )

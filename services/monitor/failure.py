@@ -94,9 +94,13 @@ class FailureWatch(LinkLossWatch):
         told = self._seen.get(body.VehicleID)
         if told is None:
             return
-        told.gate = reported(body)
-        if told.failure.kind != NONE and not _flies(told):
+        had, told.gate = _flies(told), reported(body)
+        if told.failure.kind == NONE:
+            return
+        if not _flies(told):
             told.wrong.append((body.Time, "UxAS got it back after a declared failure"))
+        elif not had and lasted(told.failure.since_ms, body.Time, 1):
+            told.wrong.append((body.Time, "ICAROUS got it later than the failure was declared"))
 
     def declared(self, body: Any) -> None:
         """Process a FailureState."""
@@ -146,8 +150,8 @@ class FailureWatch(LinkLossWatch):
         told.said.append(f"{body.Mode.name} from {now_ms / 1000:.2f} s")
 
     def _without_link(self, told: Told, body: Any) -> None:
-        """Process what is flown without the link before any failure: the known way, then a circle, in ICAROUS's hand; or
-        the mission's own procedure, which has a row of its own.
+        """Process what is flown without the link before any failure: the known way, then a circle, in ICAROUS's hand,
+        and nothing where vehicles sense or merge; or the mission's own procedure, which has a row of its own.
         """
         now_ms, mode = body.Time, int(body.Mode)
         if self._asked is not None:
@@ -160,7 +164,8 @@ class FailureWatch(LinkLossWatch):
             # whether the vehicle was out of ICAROUS's hand meanwhile, which counts as heard, is seen by its gate
             for heard_ms in ((body.Heard,) if _flies(told) else (body.Heard, now_ms))
         }
-        if mode not in may or int(body.Chosen) != FINISH:
+        strange = mode not in may or mode == told.loss.mode or int(body.Chosen) != FINISH
+        if self._merges_or_senses or strange:
             told.wrong.append((now_ms, f"{body.Mode.name} is not what follows then"))
         elif not _flies(told) and mode != LINKED:
             told.wrong.append((now_ms, f"{body.Mode.name} is flown, and UxAS has it"))

@@ -77,6 +77,7 @@ EXPIRING = (TAKEN, MISSING, declared("Expiring"), holds_from())
         ((TAKEN, gate("UxAS", 6000), *ENDED[::2]), BAD),
         ((*BLOCKED, gate("ICAROUS", 20_000), gate("UxAS", 20_500, 2)), GOOD),
         (ENDED[::2], BAD),
+        ((*ENDED[::2], gate("ICAROUS", 10_001)), BAD),
         ((*ENDED, gate("UxAS", 20_000)), BAD),
         ((*ENDED, gate("UxAS", 20_000), gate("ICAROUS", 21_000)), BAD),
         # certificates were there until less than four heartbeats before
@@ -102,6 +103,9 @@ EXPIRING = (TAKEN, MISSING, declared("Expiring"), holds_from())
         ((*BLOCKED, holds_from(20_000)), BAD),
         ((*BLOCKED, says("Linked", 20_000, Chosen="Loiter", Heard=20_000)), BAD),
         ((*BLOCKED, says("Landed", 20_000, Chosen="Loiter")), BAD),
+        # said at the same instant, but before the failure
+        ((TAKEN, MISSING, holds_from(), declared("Expiring")), BAD),
+        ((TAKEN, MISSING, holds_from(), declared("Expiring"), holds_from()), BAD),
     ],
 )  # fmt: skip
 def test_a_failure_and_what_is_flown_then(
@@ -131,6 +135,9 @@ FLIES_ON = says("Finish", 40_000, Heard=9999)
         ((TAKEN, says("Over", 40_000, Heard=9999)), BAD),
         ((TAKEN, says("Finish", 40_000, Heard=9999, Chosen="Loiter")), BAD),
         ((TAKEN, FLIES_ON, says("Land", 50_000, Heard=9999)), BAD),
+        # what is flown already does not begin
+        ((TAKEN, FLIES_ON, says("Finish", 50_000, Heard=9999)), BAD),
+        ((TAKEN, says("Linked", 5500, Heard=5500)), BAD),
         ((FLIES_ON,), BAD),
         ((TAKEN, gate("UxAS", 20_000), FLIES_ON), BAD),
         # a failure begins what is flown anew
@@ -142,6 +149,64 @@ def test_what_is_flown_without_the_link_before_a_failure(
     mission: Mission, said: tuple[Any, ...], expected: str, tmp_path: Path
 ) -> None:
     assert verdicts(mission, tmp_path, *said) == (expected, expected)
+
+
+SENSING = {"sensors": [{"kind": "adsb", "horizontal_m": 8, "vertical_m": 6, "velocity_m_s": 0.8}]}
+MERGING = {
+    "fix": {"name": "gate", "position": {"north_m": 3000, "east_m": 0, "alt_m": 300}},
+    "vehicles": [1, 2], "coordination_m": 2500, "schedule_m": 1500, "entry_m": 300,
+}  # fmt: skip
+CLOSE = {"well_clear": {"dthr_m": 150, "zthr_m": 30, "tthr_s": 5, "tcoa_s": 0}, "lookahead_s": 30}
+SILENT = {"choice": "finish", "after_s": 3}
+
+
+@pytest.mark.parametrize(
+    ("sections", "expected"),
+    [
+        ({"sensing": SENSING}, BAD),
+        ({"merging": MERGING, "daa": CLOSE}, BAD),
+        # the mission's own procedure has a row of its own
+        ({"sensing": SENSING, "link_loss": SILENT}, GOOD),
+    ],
+)
+def test_vehicles_that_sense_or_merge_fly_nothing_without_the_link_before_a_failure(
+    root: Path, sections: dict[str, Any], expected: str, tmp_path: Path
+) -> None:
+    other = {"id": 2, "position": {"north_m": 0, "east_m": 2000, "alt_m": 300}}
+    after = {"choice": "hold"}
+    mission = mission_of(root, tmp_path, other, on_failure=after, landing_sites=None, **sections)
+    assert verdicts(mission, tmp_path, TAKEN, FLIES_ON) == (expected, expected)
+    anew = (TAKEN, MISSING, FLIES_ON, declared("Expiring", 50_000), holds_from(50_000))
+    assert verdicts(mission, tmp_path, *anew) == (expected, expected)
+    assert verdicts(mission, tmp_path, *BLOCKED) == (GOOD, GOOD)
+
+
+ENDS_IT = (*ENDED[:2], holds_from())
+TELLS_LATE = says("Finish", 10_000, Heard=2000)
+"""It began 8 s after UxAS was last heard, where 3 s were asked for."""
+DOWN = message("BridgeStatus", 0, VehicleID=1, Alive=False, Note="link lost: closed")
+AT_ONCE = (declared("Ended", 0), gate("ICAROUS", 0), holds_from(0))
+
+
+@pytest.mark.parametrize(
+    ("said", "expected"),
+    [
+        (ENDS_IT, GOOD),
+        # at the instant of the failure: before it what is said counts here, and not after it
+        ((TELLS_LATE, *ENDS_IT), BAD),
+        ((*ENDED[:2], TELLS_LATE), GOOD),
+        ((DOWN, *ENDS_IT), BAD),
+        ((DOWN, *AT_ONCE), GOOD),
+    ],
+)
+def test_the_row_on_the_link_goes_up_to_the_failure(
+    root: Path, said: tuple[Any, ...], expected: str, tmp_path: Path
+) -> None:
+    after = {"choice": "hold"}
+    mission = mission_of(root, tmp_path, on_failure=after, landing_sites=None, link_loss=SILENT)
+    log = log_of({}, *said, end_ms=END_MS, outcome="failed")
+    row = "what vehicle 1 flies without the link"
+    assert both_of(mission, log, row, tmp_path) == (expected, expected)
 
 
 @pytest.mark.parametrize(
@@ -200,6 +265,7 @@ def test_what_is_not_whole_is_unknown(mission: Mission, tmp_path: Path) -> None:
     assert verdicts(mission, tmp_path, ends=False) == ("unknown", "unknown")
     assert verdicts(mission, tmp_path, *BLOCKED[:2], ends=False) == ("unknown", "unknown")
     assert verdicts(mission, tmp_path, *ENDED[::2], ends=False) == ("unknown", "unknown")
+    assert verdicts(mission, tmp_path, *BLOCKED[:-1], ends=False) == ("unknown", "unknown")
     # what is wrong is wrong without an end
     assert verdicts(mission, tmp_path, TAKEN, *ENDED, ends=False) == (BAD, BAD)
 
