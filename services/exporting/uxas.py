@@ -7,9 +7,10 @@ from xml.sax.saxutils import quoteattr
 
 from cratous.bridge.lmcp.xml_writing import dumps
 from cratous.services.exporting.messages import Told
-from cratous.services.loading.lost_link_attributes import AFTER_MS, CHOICES
+from cratous.services.loading.lost_link_attributes import CHOICES
 from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Mission
+from cratous.spec.mission.bridge_times import USUAL
 
 CONFIGURATION, MESSAGES = "cfg.xml", "messages.xml"
 ENTITY = 100
@@ -76,8 +77,9 @@ def lost_link_of(mission: Mission) -> dict[str, str]:
     """
     loss = mission.link_loss
     if loss is None:
-        after_ms = mission.bridge_times.lost_link_after_ms
-        return {} if after_ms == AFTER_MS else {"LostLinkAfter_s": f"{after_ms / 1000:.10g}"}
+        times = mission.bridge_times
+        after_s = f"{times.lost_link_after_ms / 1000:.10g}"
+        return {} if times == USUAL else {"LostLinkAfter_s": after_s}
     if loss.choice.value not in CHOICES:
         return {}
     said = {"LostLink": loss.choice.value, "LostLinkAfter_s": f"{loss.after_ms / 1000:.10g}"}
