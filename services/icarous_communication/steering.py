@@ -24,7 +24,7 @@ sooner.
 """
 COMMANDS = ("MissionCommand", "VehicleActionCommand")
 HOLD_BANK_RAD = math.radians(20.0)
-"""Bank angle of the turns in a hold [rad]."""
+"""Bank angle of the circles about a place that ICAROUS sets [rad]; UxAS's own holds are `circle_about`."""
 
 
 def action_of(line: Message, air: AirState, plan: Plan | None, projection: Projection) -> Any:
@@ -91,7 +91,7 @@ def command_of(vehicle_id: int, command_id: int, action: Any) -> Any:
 
 
 def circle_m(speed_m_s: float) -> float:
-    """Radius of a hold's circle [m]."""
+    """Radius of such a circle [m]."""
     return speed_m_s**2 / (GRAVITY_M_S2 * math.tan(HOLD_BANK_RAD))
 
 
