@@ -29,6 +29,11 @@ from cratous.spec.mission.plan import Pose
 
 HERE_M = 1.0
 """A way's first point within this distance of the vehicle is left out [m]."""
+WAITS = {
+    True: "while ICAROUS has it, and waits for the handback",
+    False: "while its ICAROUS is not heard, and waits until it is",
+}
+"""By whether ICAROUS has a vehicle that is off its plan: why a mission for it waits, and how long."""
 
 
 def goal_of(state: State, vid: int, to: Place | None) -> Position | None:

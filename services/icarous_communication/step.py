@@ -212,16 +212,17 @@ class Communication:
         return state.put(body.ID, replace(state.craft(body.ID), configuration=body)), []
 
     def mission(self, state: State, command: Any, now_ms: int) -> Step:
-        """Process another sender's MissionCommand; while ICAROUS has the vehicle it waits for the handback."""
+        """Process another sender's MissionCommand; one for a vehicle that is off its plan waits until it is back on it."""
         vid, craft = int(command.VehicleID), state.craft(command.VehicleID)
         if not command.WaypointList:
             return ended(state, vid, self.dialects.of(vid))
         if returning.is_part(command, craft):
             return state, by_uxas(self.sender, state, vid, command)
         if craft.away is not None:
-            text = f"vehicle {vid}: a mission has come while ICAROUS has it, and waits for the handback"
+            why = returning.WAITS[icarous_has(state, vid)]
             come = by_uxas(self.sender, state, vid, command)
-            return state.put(vid, replace(craft, waiting=command)), [Note("WARN", text), *come]
+            note = Note("WARN", f"vehicle {vid}: a mission has come {why}")
+            return state.put(vid, replace(craft, waiting=command)), [note, *come]
         state, out = self._in_force(state, vid, command, now_ms)
         return state, [*by_uxas(self.sender, state, vid, command), *out]
 

@@ -4,7 +4,7 @@
 |---|---|---|
 | LostLink | none | `finish`, `loiter` or `return`; without it, a vehicle that UxAS has goes on with its mission |
 | LostLinkAfter_s | 30 | the silence after which that begins, and one that ICAROUS has is without the link [s] |
-| LostLinkTo | none | the place of `return`: latitude, longitude [deg], altitude [m MSL]; none: where it was first seen |
+| LostLinkTo | none | the place of `return`: latitude, longitude [deg], altitude [m MSL]; none: its first place |
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ from cratous.services.flight.messages import Lost, Say
 from cratous.services.icarous_communication import holding
 from cratous.services.icarous_communication.listeners import Dialects
 from cratous.services.icarous_communication.settings import ATTRIBUTES, Settings, settings_of
-from cratous.services.icarous_communication.state import State
+from cratous.services.icarous_communication.state import Note, State
 from cratous.services.icarous_communication.step import Communication
 from cratous.services.icarous_communication.unheard import IN_HAND, LostLink
 from cratous.services.loading.lost_link_attributes import Place
@@ -213,6 +213,23 @@ def test_one_that_is_held_may_be_taken_over_and_comes_back_to_where_it_left_its_
     (command,) = flight.got("MissionCommand")
     places = [PLANE.to_local(w.Latitude, w.Longitude) for w in command.WaypointList]
     assert any(math.dist(place, (500.0, 0.0)) < 20.0 for place in places), places
+
+
+def test_a_mission_that_comes_while_it_is_held_waits_and_is_then_flown() -> None:
+    flight = Flight(ASKED)
+    flight.say(tp.SetMode("PASSIVE", 0))
+    flight.fly(500.0, 2)
+    flight.wait(30_000)
+    later = way((500.0, 0.0), (0.0, 5000.0))
+    state, out = flight.step.mission(flight.state, later, flight.now_ms)
+    (note,) = (one.text for one in out if isinstance(one, Note))
+    assert note == (
+        "vehicle 1: a mission has come while its ICAROUS is not heard, and waits until it is"
+    )
+    flight.state = state
+    assert flight.got("MissionCommand") == []
+    flight.say(tp.Heartbeat(2, 30.0))
+    assert flight.got("MissionCommand") == [later]
 
 
 PLACE = Position(1500.0, 2500.0, 350.0)
