@@ -9,7 +9,7 @@ task given up before (`blocked`), certificates missing for four heartbeats (`exp
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
@@ -57,7 +57,6 @@ class Told(Flown):
     gate: Gate = UNTOUCHED
     blocked: bool = False
     without_ms: int | None = None
-    kinds: list[str] = field(default_factory=list)
 
 
 class FailureWatch(LinkLossWatch):

@@ -104,8 +104,9 @@ def test_one_that_returns_without_the_link_is_waited_for(flight: Ending) -> None
     assert flight.outcome(160_000, late=False) == "safe state"
 
 
-def test_a_task_that_circles_is_not_complete_for_want_of_others(flight: Ending) -> None:
-    """With every task failed or complete, one that circles still ends in the safe state, not complete."""
+def test_a_vehicle_that_circles_ends_in_the_safe_state_also_without_a_task_left(
+    flight: Ending,
+) -> None:
     flight.heard(done(1))
     flight.heard(done(2))
     flight.heard(alone(2, "Loiter", 30_000))
