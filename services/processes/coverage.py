@@ -92,7 +92,7 @@ def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, s
     what = "the original's clients have no heartbeat, so their silence does not show"
     yield "link_loss", deaf, what, "no link_loss"
     often = loss is not None and not lasted(0, mission.simulation.heartbeat_ms, WATCH_MS)
-    what = f"what is flown without the link begins within less than {WATCH_MS / 1000:g} s"
+    what = f"UxAS's end looks only every {WATCH_MS / 1000:g} s whether it hears an ICAROUS"
     yield "simulation.heartbeat_ms", often, what, f"at least {WATCH_MS}"
     after = on_failure_of(mission) is not None
     yield "on_failure", after, "the mission says what is flown after a failure", "no on_failure"

@@ -163,6 +163,7 @@ def test_a_loss_is_not_noticed_within_a_shorter_heartbeat(root: Path) -> None:
         with pytest.raises(BadInput) as wrong:
             told_of(mission)
         assert wrong.value.item == "simulation.heartbeat_ms"
+        assert "looks only every 0.5 s" in wrong.value.what
         assert wrong.value.expected.startswith("at least 500")
 
 
