@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -51,26 +50,22 @@ def conduct(file: Path, folder: Path, engine: Any, watch: Any = None) -> tuple[s
         return text_of(build(campaign, list(one.rows()), "v")), course
 
 
-def _flies(worker: int) -> bool:
-    """Whether a worker has begun an attempt: then there is a process that flies."""
-    for thread in Path(f"/proc/{worker}/task").iterdir():
-        with suppress(FileNotFoundError, ProcessLookupError):  # a thread that has ended
-            if (thread / "children").read_text():
-                return True
-    return False
-
-
 def test_a_killed_worker_costs_an_attempt_and_no_byte(tmp_path: Path) -> None:
-    file = written(tmp_path, {"plain": "sleep"}, VARIED)
+    mark = tmp_path / "mark"
+    file = written(tmp_path, {"plain": f"hang {mark}"}, VARIED)
+    mark.write_text("alone no run hangs")
     with engine(1, None) as alone:
         expected, _ = conduct(file, tmp_path / "one", alone)
+    mark.unlink()
     killed: list[int] = []
     with cluster(2) as (address, processes), engine(1, address) as made:
 
         def watch(course: Course) -> None:
-            if course.flown >= 2 and not killed and _flies(processes[1].pid):
-                killed.append(processes[1].pid)
-                os.kill(processes[1].pid, signal.SIGKILL)
+            # the hanging attempt has been told by now: others were flown since
+            if course.flown >= 2 and not killed and (worker := mark.read_text().strip()):
+                killed.append(int(worker))
+                assert killed[0] in [one.pid for one in processes[1:]]
+                os.kill(killed[0], signal.SIGKILL)
 
         text, course = conduct(file, tmp_path / "two", made, watch)
     assert killed
