@@ -8,7 +8,6 @@ ended it.
 
 from __future__ import annotations
 
-import atexit
 import gc
 import importlib
 import io
@@ -23,6 +22,7 @@ from typing import Any
 import click
 
 from cratous import __version__
+from cratous.services.cli.ending import end
 from cratous.services.cli.stopping import Stopped, handlers_as_before, stop_behind, stoppable
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.files.extras import told
@@ -106,8 +106,6 @@ def main(argv: list[str] | None = None) -> int:
     if argv is None:
         # most objects live until the end: collect garbage less often
         gc.set_threshold(100_000, 10, 10)
-        # the process ends with the command: no final collection is needed
-        atexit.register(gc.freeze)
     try:
         with handlers_as_before() if argv is not None else nullcontext(), stoppable(), told():
             result = cli.main(args=arguments, prog_name="cratous", standalone_mode=False)
@@ -138,6 +136,11 @@ def main(argv: list[str] | None = None) -> int:
         if as_json:
             click.echo(json.dumps({"error": f"internal error: {name}", "exit_code": 70}))
         return INTERNAL_ERROR
+
+
+def program() -> None:
+    """Run the command line of this process, and end the process."""
+    end(main())
 
 
 def _stopped(stop: Stopped, more: str = "") -> int:

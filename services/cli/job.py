@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from cratous.services.logs.log import LogWriter
     from cratous.services.monitor import Monitor
     from cratous.services.requirements.requirement_files import OwnFile
+    from cratous.services.startup.gate_process import Gate, Here
 
 Tell = Callable[[str], None]
 
@@ -137,18 +138,40 @@ def folder_name(mission: Mission) -> str:
     return f"{mission.name}-seed{mission.seed}" if mission.seed else mission.name
 
 
+PLANNED_WITH = (
+    "cratous.services.certify.evidence", "cratous.services.certify.proofs",
+    "cratous.services.certify.verdicts", "cratous.services.monitor.plan_check",
+    "cratous.services.pipeline.plan", "cratous.services.logs.records", "pyproj",
+)  # fmt: skip
+"""What a mission is planned with, imported beside the gate."""
+FLOWN_WITH = (
+    *PLANNED_WITH, "cratous.services.flight.loop", "cratous.services.flight.landing_reach",
+    "cratous.services.flight.take_off", "cratous.services.assumptions.observation_texts",
+    "cratous.services.certify.blame_texts", "cratous.services.daa.intervals",
+    "cratous.services.icarous.band_choices", "cratous.services.logs.log",
+    "cratous.services.certify.user_requirements", "cratous.services.certify.report_schema",
+    "cratous.services.certify.html", "jinja2",
+)  # fmt: skip
+"""What a mission is flown and reported with, imported beside the gate."""
+
+
 def run_mission(
     mission: Mission,
     folder: Path,
     settings: Settings,
     tell: Tell = silent,
     onlooker: Onlooker | None = None,
+    gate: Gate | Here | None = None,
 ) -> dict[str, Any]:
-    """Fly one mission and write log and report into `folder`; returns the report as data."""
-    from cratous.core import ledger
-    from cratous.services.certify.report import write_report
+    """Fly one mission and write log and report into `folder`; returns the report as data.
 
-    standing = ledger.require(allow_unproved=settings.allow_unproved)
+    gate: begun already; None: it runs here.
+    """
+    from cratous.services.certify.report import write_report
+    from cratous.services.startup.gate_process import Here
+
+    gate = gate or Here(settings.allow_unproved)
+    standing = gate.standing(FLOWN_WITH)
     tell(f"proofs: {standing.line}")
     report = fly_mission(mission, folder, settings, standing, tell, onlooker)
     write_report(report, folder)

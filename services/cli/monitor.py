@@ -119,26 +119,31 @@ def monitor(
         from cratous.services.cli import monitor_model
 
         return monitor_model.model(log, as_json, allow_unproved)
-    from cratous.core import ledger
-    from cratous.services.assumptions.observation_texts import GROUNDLESS
-    from cratous.services.assumptions.observation_texts import lines as assumption_lines
-    from cratous.services.certify.blame import blame_rows
-    from cratous.services.certify.blame_texts import lines as blame_lines
-    from cratous.services.certify.evidence import counted
-    from cratous.services.certify.proofs import inventory, summary
-    from cratous.services.certify.rejudge import watch
-    from cratous.services.certify.verdicts import (
-        constraint_rows,
-        requirement_rows,
-        without_ground,
-    )
     from cratous.services.cli.progress import waiting
-    from cratous.services.cli.show import requirement_table, say
-    from cratous.services.logs.log import read_meta
-    from cratous.services.logs.source import DOUBTS, doubts
+    from cratous.services.startup import gate_process
 
-    with waiting("holding the code against its proofs", as_json) as wait:
-        standing = ledger.require(allow_unproved=allow_unproved)
+    what = "holding the code against its proofs"
+    with (
+        gate_process.begun(allow_unproved=allow_unproved) as gate,
+        waiting(what, as_json) as wait,
+    ):
+        from cratous.services.assumptions.observation_texts import GROUNDLESS
+        from cratous.services.assumptions.observation_texts import lines as assumption_lines
+        from cratous.services.certify.blame import blame_rows
+        from cratous.services.certify.blame_texts import lines as blame_lines
+        from cratous.services.certify.evidence import counted
+        from cratous.services.certify.proofs import inventory, summary
+        from cratous.services.certify.rejudge import watch
+        from cratous.services.certify.verdicts import (
+            constraint_rows,
+            requirement_rows,
+            without_ground,
+        )
+        from cratous.services.cli.show import requirement_table, say
+        from cratous.services.logs.log import read_meta
+        from cratous.services.logs.source import DOUBTS, doubts
+
+        standing = gate.standing(("pyproj", "cratous.services.icarous.band_choices"))
         wait.at("judging the messages of the log")
         doubted = [DOUBTS[one] for one in doubts(log)]
         with counted() as calls:

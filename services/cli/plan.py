@@ -74,13 +74,18 @@ def plan(
     if task is not None and isinstance(loaded[0], Mission):
         _check_asked(task, loaded[0])
 
-    from cratous.core import ledger
     from cratous.services.cli.progress import waiting
-    from cratous.services.startup import ahead
+    from cratous.services.startup import gate_process
 
-    ahead.begin(one for one in loaded if isinstance(one, Mission))
-    with waiting("holding the code against its proofs", as_json):
-        standing = ledger.require(allow_unproved=allow_unproved)
+    with (
+        gate_process.begun(allow_unproved=allow_unproved) as gate,
+        waiting("holding the code against its proofs", as_json),
+    ):
+        from cratous.services.cli.job import PLANNED_WITH
+        from cratous.services.startup import ahead
+
+        ahead.begin(one for one in loaded if isinstance(one, Mission))
+        standing = gate.standing(PLANNED_WITH)
     job = _Job(as_json, certificate, task, standing)
     if count == 1:
         assert isinstance(loaded[0], Mission)

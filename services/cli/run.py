@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -20,6 +20,9 @@ from cratous.services.cli.numbers import Number
 from cratous.services.cli.progress import waiting
 from cratous.services.cli.show import requirement_table, say, shown_path
 from cratous.services.cli.user_requirements import own_data, own_files, own_lines, own_option
+
+if TYPE_CHECKING:
+    from cratous.spec.mission import Mission
 
 Tell = Callable[[str], None]
 COLLECTED_AT = 1_000_000
@@ -162,9 +165,7 @@ def fly_and_show(
     processes; None: in this process, in virtual time.
     """
     silent = quiet or as_json
-    with waiting("loading the mission", silent) as wait:
-        tell = untold if silent else wait.tell
-        report, folder = run_one(mission, seed, out or Path("out"), settings, tell, processes)
+    report, folder = run_one(mission, seed, out or Path("out"), settings, silent, processes)
     if as_json:
         click.echo(json.dumps(summary(report, folder), indent=1))
     else:
@@ -177,31 +178,59 @@ def run_one(
     seed: int,
     out: Path,
     settings: Settings,
-    tell: Tell,
+    silent: bool,
     processes: InProcesses | None = None,
 ) -> tuple[dict[str, Any], Path]:
-    """Load, run and store one mission; returns the report and its folder. processes: as in `fly_and_show`."""
-    from cratous.services.cli.relation_places import RelationPlaces
+    """Load, run and store one mission; returns the report and its folder.
+
+    silent: whether no progress is shown; processes: as in `fly_and_show`.
+    """
     from cratous.services.loading import load
+
+    with waiting("loading the mission", silent):
+        loaded = load(path, seed)
+    target = out / folder_name(loaded)
+    if processes is not None:
+        return _run_in_processes(loaded, path, target, settings, silent, processes), target
+
+    from cratous.services.startup import gate_process
+
+    with (
+        gate_process.begun(allow_unproved=settings.allow_unproved) as gate,
+        _stored(loaded, target, "holding the code against its proofs", silent) as (folder, tell),
+        _rarely_collected(),
+    ):
+        report = run_mission(loaded, folder, settings, tell, gate=gate)
+    return report, target
+
+
+def _run_in_processes(
+    loaded: Mission,
+    path: Path,
+    target: Path,
+    settings: Settings,
+    silent: bool,
+    processes: InProcesses,
+) -> dict[str, Any]:
+    from cratous.services.cli.processes_job import run_in_processes
+
+    with _stored(loaded, target, "starting the processes", silent) as (folder, tell):
+        return run_in_processes(loaded, path, folder, settings, processes, tell)
+
+
+@contextmanager
+def _stored(loaded: Mission, target: Path, what: str, silent: bool) -> Iterator[tuple[Path, Tell]]:
+    """A folder whose contents are stored as `target` at the end, and what tells the progress; what: its beginning."""
+    from cratous.services.cli.relation_places import RelationPlaces
     from cratous.services.results.folder import results_folder
     from cratous.services.startup import ahead
 
-    loaded = load(path, seed)
-    ahead.begin([loaded])
-    target, places = out / folder_name(loaded), RelationPlaces(loaded)
-
-    def placed(text: str) -> None:
-        tell(places.told(text))
-
-    with places.in_reasons(), results_folder(target, tell) as folder:
-        if processes is None:
-            with _rarely_collected():
-                report = run_mission(loaded, folder, settings, placed)
-        else:
-            from cratous.services.cli.processes_job import run_in_processes
-
-            report = run_in_processes(loaded, path, folder, settings, processes, placed)
-    return report, target
+    places = RelationPlaces(loaded)
+    with waiting(what, silent) as wait, places.in_reasons():
+        tell = untold if silent else wait.tell
+        ahead.begin([loaded])
+        with results_folder(target, tell) as folder:
+            yield folder, lambda text: tell(places.told(text))
 
 
 @contextmanager

@@ -22,7 +22,15 @@ def end_with_parent() -> None:
     parent = asked.removesuffix(AT_ONCE)
     if not parent or sys.platform != "linux":
         return
-    number = signal.SIGTERM if asked == parent else signal.SIGKILL
+    _end_with(parent, signal.SIGTERM if asked == parent else signal.SIGKILL)
+
+
+def end_at_once_with(parent: int) -> None:
+    """In a fork: have Linux send SIGKILL when the parent (its pid) ends; SystemExit if it has ended already."""
+    _end_with(str(parent), signal.SIGKILL)
+
+
+def _end_with(parent: str, number: signal.Signals) -> None:
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(number), 0, 0, 0)
     if str(os.getppid()) != parent:
         raise SystemExit(128 + signal.SIGTERM)

@@ -47,7 +47,7 @@ def test_after_a_flight_garbage_is_collected_as_before(
 ) -> None:
     before, meanwhile = gc.get_threshold(), []
 
-    def fly(*_: object) -> dict[str, Any]:
+    def fly(*_: object, **_gate: object) -> dict[str, Any]:
         meanwhile.append(gc.get_threshold()[0])
         if ends is not None:
             raise ends
@@ -55,7 +55,7 @@ def test_after_a_flight_garbage_is_collected_as_before(
 
     monkeypatch.setattr(running, "run_mission", fly)
     with pytest.raises(type(ends)) if ends is not None else contextlib.nullcontext():
-        running.run_one(CROSSING, 0, tmp_path, Settings(), lambda _text: None)
+        running.run_one(CROSSING, 0, tmp_path, Settings(), True)
     assert meanwhile == [running.COLLECTED_AT]
     assert gc.get_threshold() == before
 

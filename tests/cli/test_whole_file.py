@@ -146,7 +146,7 @@ def test_signals_clean_up(tmp_path: Path, number: signal.Signals) -> None:
         "    signal.signal(signal.SIGHUP, signal.SIG_DFL)\n"
         "if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:\n"
         "    signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "def stay(mission, folder, settings, tell):\n"
+        "def stay(mission, folder, settings, tell, **_gate):\n"
         "    (folder / 'report.json').write_text('half'); print('flying', flush=True)\n"
         "    time.sleep(60)\n"
         "import cratous.services.cli.run as run; run.run_mission = stay\n"
