@@ -216,7 +216,9 @@ class Bus:
         """Deliver until nothing is queued; returns how many messages were delivered."""
         delivered = 0
         while self._queue:
-            envelope = replace(self._queue.popleft(), time_ms=self.now_ms)
+            envelope = self._queue.popleft()
+            if envelope.time_ms != self.now_ms:
+                envelope = replace(envelope, time_ms=self.now_ms)
             delivered += 1
             for listener in self._taps:
                 listener(envelope)

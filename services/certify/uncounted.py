@@ -16,6 +16,9 @@ from typing import Any
 from cratous.core.kernel import qualified
 from cratous.core.kernel.sources import names_of, ours
 
+ASSIGNING = frozenset(dis.opmap[name] for name in ("STORE_GLOBAL", "DELETE_GLOBAL"))
+"""Instructions that assign to names of a module."""
+
 
 def entered(function: Callable[..., Any]) -> dict[str, FunctionType]:
     """The functions that a function calls directly or indirectly by the names of their modules, itself included, each
@@ -57,9 +60,8 @@ def uncounted(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _assigns(plain: FunctionType) -> bool:
-    return any(
-        one.opname in ("STORE_GLOBAL", "DELETE_GLOBAL") for one in dis.get_instructions(plain)
-    )
+    # an instruction is two bytes, of which the first says which; the caches after it are zeros here
+    return not ASSIGNING.isdisjoint(plain.__code__.co_code[::2])
 
 
 def _copy(plain: FunctionType, scope: dict[str, Any]) -> FunctionType:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -139,20 +140,32 @@ def folder_name(mission: Mission) -> str:
 
 
 PLANNED_WITH = (
-    "cratous.services.certify.evidence", "cratous.services.certify.proofs",
-    "cratous.services.certify.verdicts", "cratous.services.monitor.plan_check",
-    "cratous.services.pipeline.plan", "cratous.services.logs.records", "pyproj",
+    "certify.evidence", "certify.proofs", "certify.verdicts", "monitor.plan_check",
+    "pipeline.plan", "logs.records",
 )  # fmt: skip
-"""What a mission is planned with, imported beside the gate."""
+"""Services with which a mission is planned."""
 FLOWN_WITH = (
-    *PLANNED_WITH, "cratous.services.flight.loop", "cratous.services.flight.landing_reach",
-    "cratous.services.flight.take_off", "cratous.services.assumptions.observation_texts",
-    "cratous.services.certify.blame_texts", "cratous.services.daa.intervals",
-    "cratous.services.icarous.band_choices", "cratous.services.logs.log",
-    "cratous.services.certify.user_requirements", "cratous.services.certify.report_schema",
-    "cratous.services.certify.html", "jinja2",
+    *PLANNED_WITH, "flight.loop", "flight.landing_reach", "flight.take_off",
+    "assumptions.observation_texts", "certify.blame_texts", "daa.intervals",
+    "icarous.band_choices", "logs.log", "certify.user_requirements", "certify.report_schema",
+    "certify.html",
 )  # fmt: skip
-"""What a mission is flown and reported with, imported beside the gate."""
+"""Services with which a mission is flown and reported."""
+
+
+def imported(services: tuple[str, ...]) -> None:
+    """Import services, and the library for positions on the Earth, before they are needed."""
+    for name in services:
+        importlib.import_module(f"cratous.services.{name}")
+    importlib.import_module("pyproj")
+
+
+def _flight_prepared() -> None:
+    """Import what a mission is flown with, and identify this code."""
+    from cratous.services.certify.report import environment
+
+    imported(FLOWN_WITH)
+    environment()
 
 
 def run_mission(
@@ -171,7 +184,7 @@ def run_mission(
     from cratous.services.startup.gate_process import Here
 
     gate = gate or Here(settings.allow_unproved)
-    standing = gate.standing(FLOWN_WITH)
+    standing = gate.standing(_flight_prepared)
     tell(f"proofs: {standing.line}")
     report = fly_mission(mission, folder, settings, standing, tell, onlooker)
     write_report(report, folder)

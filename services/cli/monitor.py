@@ -139,11 +139,12 @@ def monitor(
             requirement_rows,
             without_ground,
         )
+        from cratous.services.cli.job import imported
         from cratous.services.cli.show import requirement_table, say
         from cratous.services.logs.log import read_meta
         from cratous.services.logs.source import DOUBTS, doubts
 
-        standing = gate.standing(("pyproj", "cratous.services.icarous.band_choices"))
+        standing = gate.standing(lambda: imported(("icarous.band_choices",)))
         wait.at("judging the messages of the log")
         doubted = [DOUBTS[one] for one in doubts(log)]
         with counted() as calls:

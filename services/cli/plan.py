@@ -81,11 +81,11 @@ def plan(
         gate_process.begun(allow_unproved=allow_unproved) as gate,
         waiting("holding the code against its proofs", as_json),
     ):
-        from cratous.services.cli.job import PLANNED_WITH
+        from cratous.services.cli.job import PLANNED_WITH, imported
         from cratous.services.startup import ahead
 
         ahead.begin(one for one in loaded if isinstance(one, Mission))
-        standing = gate.standing(PLANNED_WITH)
+        standing = gate.standing(lambda: imported(PLANNED_WITH))
     job = _Job(as_json, certificate, task, standing)
     if count == 1:
         assert isinstance(loaded[0], Mission)

@@ -64,16 +64,19 @@ def footprints(
     elevation = np.clip(elevation, camera.min_elevation_rad, camera.max_elevation_rad)
     look = data[:, 2] + azimuth
     half = math.tan(camera.hfov_rad / 2) * shrink
+    level, below = np.cos(elevation), np.sin(elevation)
+    north, east = np.cos(look), np.sin(look)
+    flattest = math.tan(flattest_rad)
     corners = np.full((len(data), 4, 2), np.nan)
     for k, (right, up) in enumerate(((-1, 1), (1, 1), (1, -1), (-1, -1))):
         # corner ray: boresight + right * half * (right axis) + up * half / aspect * (up axis)
         r, u = right * half, up * half / camera.aspect
-        ahead = np.cos(elevation) - u * np.sin(elevation)
-        down = -(np.sin(elevation) + u * np.cos(elevation))
-        steep = (down > 1e-3) & (down >= math.tan(flattest_rad) * np.hypot(ahead, r))
+        ahead = level - u * below
+        down = -(below + u * level)
+        steep = (down > 1e-3) & (down >= flattest * np.hypot(ahead, r))
         reach = np.where(steep, height_m / np.where(steep, down, 1.0), np.nan)
-        corners[:, k, 0] = data[:, 0] + reach * (ahead * np.cos(look) - r * np.sin(look))
-        corners[:, k, 1] = data[:, 1] + reach * (ahead * np.sin(look) + r * np.cos(look))
+        corners[:, k, 0] = data[:, 0] + reach * (ahead * north - r * east)
+        corners[:, k, 1] = data[:, 1] + reach * (ahead * east + r * north)
     corners[np.isnan(corners).any(axis=(1, 2))] = np.nan
     return corners
 

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import contextlib
 import gc
-import importlib
 import json
 import os
 import signal
 import sys
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, NoReturn
 
 from cratous.core import ledger
@@ -28,6 +27,10 @@ MOST_BYTES = 1 << 24
 """Longest answer that is read."""
 COUNTS = ("kernels", "theorems", "assumptions")
 REFUSED, ELSEWHERE = "refused", "elsewhere"
+
+
+def nothing() -> None:
+    """Prepare nothing."""
 
 
 class Gate:
@@ -44,13 +47,12 @@ class Gate:
         os.close(write)
         self._pipe = os.fdopen(read, "rb")
 
-    def standing(self, modules: Iterable[str] = ()) -> Standing:
-        """As `core.ledger.require`, with the same answers; modules: what the caller uses next, imported meanwhile.
+    def standing(self, meanwhile: Callable[[], object] = nothing) -> Standing:
+        """As `core.ledger.require`, with the same answers; meanwhile: what the caller prepares for after it.
 
         Raises Refused also if the process ended without an answer. To be called once.
         """
-        for module in modules:
-            importlib.import_module(module)
+        meanwhile()
         said = self._pipe.read(MOST_BYTES)
         answer = _understood(said, self._ended())
         if ELSEWHERE in answer or not _same(self._known, _running()):
@@ -80,8 +82,8 @@ class Here:
     def __init__(self, allow_unproved: bool) -> None:
         self._allow = allow_unproved
 
-    def standing(self, modules: Iterable[str] = ()) -> Standing:
-        """As `Gate.standing`; the modules are imported by those who use them."""
+    def standing(self, meanwhile: Callable[[], object] = nothing) -> Standing:
+        """As `Gate.standing`, without preparing anything: it would gain no time."""
         return ledger.require(allow_unproved=self._allow)
 
     def end(self) -> None:
