@@ -72,7 +72,7 @@ def improve(
     who, how = np.zeros(n, np.int64), np.zeros(n, np.int64)
     for v, o in moves:
         who[i.task[o]], how[i.task[o]] = v, o
-    cost = int(machine_for(i, anneal, MOVE * steps)(order, who, how, steps, seed, hot, i))
+    cost = int(machine_for(i, anneal, 1 + MOVE * steps)(order, who, how, steps, seed, hot, i))
     found = tuple((int(who[j]), int(how[j])) for j in order)
     late = cost >= NONE or any(end > i.due[i.task[o]] for _, o, _, _, end in timed(i, found))
     return NONE if late else cost, found

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cratous.core.assignment.compiled import machine_for
+from cratous.core.assignment.compiled import machine_searching
 from cratous.core.assignment.instance import TABLE_MAX_MS, Instance, horizon
 from cratous.core.assignment.layers import look_ahead
 from cratous.core.assignment.search_records import Ahead
@@ -76,13 +76,16 @@ def by_sets(
     before = all_before(i)
     due = np.full(n, HORIZON, np.int64)
     relaxed = i._replace(need=before, release=i.release * 0, due=due)
-    machine_for(i, latest_tables)(relaxed, ahead.kind_of, ahead.leader, latest, start)
+    steps = latest.size * i.duration.size
+    machine_searching(i, latest_tables, steps)(relaxed, ahead.kind_of, ahead.leader, latest, start)
     # a shared table permits every option: sets that a vehicle may not do are excluded here
     sets = np.arange(1 << n)
     for v in range(i.vehicles):
         start[v, (sets & ~int(ahead.able[v])) != 0] = -HORIZON
     value = np.empty((i.vehicles + 1, 1 << n), np.int64)
-    machine_for(i, best_deals)(start, i.ready, int(i.weight[1]), value)
+    machine_searching(i, best_deals, i.vehicles * n * value.size)(
+        start, i.ready, int(i.weight[1]), value
+    )
     cost = int(value[0, -1])
     if cost >= HORIZON:
         return 1 << 60, None

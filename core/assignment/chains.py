@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cratous.core.assignment.compiled import machine_for
+from cratous.core.assignment.compiled import CHILD, machine_searching
 from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.layers import first_state, look_ahead, search_below
 from cratous.core.assignment.refutation import bound, place
@@ -146,12 +146,14 @@ def chains_below(
     stack[0] = first
     kids = np.zeros((n, i.vehicles * i.duration.size, 3), np.int64)
     count, turn, control = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(3, np.int64)
-    run, best, leaves = machine_for(i, descend), None, 0
+    best, leaves = None, 0
     while True:
         left = nodes - int(control[1])
         if left <= 0 or (stop is not None and stop(int(control[1]))):
             return Listed(limit, best, False, int(control[1]), leaves)
-        found = run(stack, kids, count, turn, control, limit, min(left, 20_000), search)
+        most = min(left, 20_000)
+        run = machine_searching(i, descend, CHILD * most)
+        found = run(stack, kids, count, turn, control, limit, most, search)
         if found == EMPTY:
             return Listed(limit, best, True, int(control[1]), leaves)
         if found == TIRED:

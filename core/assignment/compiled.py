@@ -17,19 +17,27 @@ from cratous.core.readings.tiered import swift
 
 SMALL_TASKS, SMALL_MOVES = 3, 120
 """Largest number of tasks, and of vehicles times options, of a small instance."""
-
+MODERATE_TASKS, MODERATE_MOVES = 6, 180
+"""The same of a moderate instance: CPython mostly solves it within a second, and compiling takes many."""
 
 STEPS = 300
 """Elementary steps of a loop that CPython does in about a tenth of a millisecond, the unit of `swift`."""
 
 
 def machine_for(instance: Any, function: Callable[..., Any], steps: int = 0) -> Callable[..., Any]:
-    """The function compiled, or for a small instance what `swift` chooses for so many steps; both give the same
-    results.
+    """The function compiled, or for a small or moderate instance what `swift` chooses for so many steps; all give the
+    same results.
     """
-    if not is_small(instance):
-        return machine(function)
-    return _wrapping(swift(function, 1 + steps // STEPS)) if steps else _plainly(function)
+    if steps and is_moderate(instance):
+        return _wrapping(swift(function, 1 + steps // STEPS))
+    return _plainly(function) if is_small(instance) else machine(function)
+
+
+def machine_searching(
+    instance: Any, function: Callable[..., Any], steps: int
+) -> Callable[..., Any]:
+    """`machine_for` of a search of about so many steps, which for a small instance CPython does."""
+    return _plainly(function) if is_small(instance) else machine_for(instance, function, steps)
 
 
 def is_small(instance: Any) -> bool:
@@ -37,6 +45,14 @@ def is_small(instance: Any) -> bool:
     return bool(instance.tasks <= SMALL_TASKS and instance.may.size <= SMALL_MOVES)
 
 
+def is_moderate(instance: Any) -> bool:
+    """Whether CPython begins to solve an instance, and goes on unless there is machine code already or much to do."""
+    few = instance.tasks <= MODERATE_TASKS and instance.may.size <= MODERATE_MOVES
+    return bool(few or is_small(instance))
+
+
+CHILD = 100
+"""Steps per child of a state in a search."""
 PASS_MOST = 10_000
 """Tasks times vehicles times options that CPython passes over in some 10 ms."""
 FIRST_NODES, STATES_MOST, DEALING_MOST = 500, 128, 2_000
@@ -64,9 +80,11 @@ def is_brief(instance: Any) -> bool:
     return True
 
 
-def machine_after(little: bool, instance: Any, function: Callable[..., Any]) -> Callable[..., Any]:
-    """`machine_for` of a search: CPython while few nodes are visited, or if the whole search is small."""
-    return _plainly(function) if little else machine_for(instance, function)
+def machine_after(
+    little: bool, instance: Any, function: Callable[..., Any], steps: int
+) -> Callable[..., Any]:
+    """`machine_searching`: CPython while few nodes are visited, or if the whole search is small."""
+    return _plainly(function) if little else machine_searching(instance, function, steps)
 
 
 def _wrapping(function: Callable[..., Any]) -> Callable[..., Any]:

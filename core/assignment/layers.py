@@ -14,12 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from cratous.core.assignment.compiled import (
+    CHILD,
     FIRST_NODES,
     is_brief,
-    is_small,
+    is_moderate,
     machine_after,
     machine_for,
     machine_for_pass,
+    machine_searching,
 )
 from cratous.core.assignment.instance import FAR, TABLE_MAX_MS, Instance, horizon
 from cratous.core.assignment.lower_bounds import (
@@ -108,14 +110,14 @@ def shortest(instance: Instance, may: np.ndarray) -> np.ndarray:
     """The shortest routes with any stops at options that `may` allows, checked for every stop."""
     i = instance
     given = (i.travel, i.duration, may)
-    known = _FOUND.of(given) if is_small(i) else None
+    known = _FOUND.of(given) if is_moderate(i) else None
     if known is not None:
         return known[0]
     steps = i.travel.size * i.duration.size
     reach: np.ndarray = machine_for(i, shortest_ways, steps)(i.travel, i.duration, may)
     if not machine_for(i, ways_hold, steps)(reach, i.travel, i.duration, may):
         raise RuntimeError("a way with stops is shorter than the shortest way that was found")
-    if is_small(i):
+    if is_moderate(i):
         _FOUND.put(given, (reach,))
     return reach
 
@@ -191,7 +193,8 @@ def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:
     anywhere = shortest(i, np.ones_like(i.may))
     need = i.need if i.waits else i.need * 0
     relaxed = i._replace(travel=anywhere, need=need, release=ahead.head, due=due)
-    machine_for(i, latest_tables)(relaxed, ahead.kind_of, ahead.leader, latest, start)
+    steps = latest.size * i.duration.size
+    machine_searching(i, latest_tables, steps)(relaxed, ahead.kind_of, ahead.leader, latest, start)
     return Tables(1, due, latest, start)
 
 
@@ -239,8 +242,9 @@ def refute(
         while first < len(layer) and not halted:
             made = Layer(into, origin, rank, table, chain)
             few = brief and counts[0] <= FIRST_NODES
-            kept, first = machine_after(few, i, expand)(
-                layer, first, min(len(layer), first + CHUNK), kept, made, limit, search, counts
+            end = min(len(layer), first + CHUNK)
+            kept, first = machine_after(few, i, expand, CHILD * (end - first) * fan)(
+                layer, first, end, kept, made, limit, search, counts
             )
             halted = stop is not None and stop(int(counts[0]))
             if kept + fan > room and first < len(layer):
@@ -250,7 +254,7 @@ def refute(
                 into, origin = _longer(into, room), _longer(origin, room)
                 rank, chain = _longer(rank, room), np.empty(room, np.int64)
                 table = np.empty(1 << (2 * room - 1).bit_length(), np.int64)
-                machine_for(i, rehash)(into, kept, table, chain, i.vehicles)
+                machine_searching(i, rehash, CHILD * kept)(into, kept, table, chain, i.vehicles)
         if first < len(layer) or halted:
             # children of the states from here on are dropped
             known = min(known, int(ranks[min(first, len(layer) - 1) :].min()))

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cratous.core.assignment.compiled import STATES_MOST, is_brief, machine_after
+from cratous.core.assignment.compiled import CHILD, STATES_MOST, is_brief, machine_after
 from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.layers import first_state, look_ahead, search_below
 from cratous.core.assignment.refutation import closed, cost_now
@@ -37,7 +37,8 @@ def least_cost(instance: Instance, limit: int, origins: Sequence[np.ndarray]) ->
         if depth + 1 == i.tasks:
             search = search._replace(deals=0)
         listed += len(origin)
-        found = machine_after(brief and listed <= STATES_MOST, i, closed)(
+        steps = CHILD * len(layer) * i.may.size
+        found = machine_after(brief and listed <= STATES_MOST, i, closed, steps)(
             layer, origin, into, table, np.empty(len(origin), np.int64), limit, search
         )
         if found >= 0:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cratous.core.assignment.compiled import machine_for
+from cratous.core.assignment.compiled import CHILD, machine_searching
 from cratous.core.assignment.earliest_times import Unmet, Visit, earliest, least_starts
 from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.layers import Ahead, first_state
@@ -120,4 +120,4 @@ class Settler:
             state[1 + i.vehicles + v] = start[k] + visits[k].duration_ms
             state[2 + 2 * i.vehicles] += int(i.added[v, at[v], o])
             state[1 + v] = at[v] = o
-        return int(machine_for(i, bound)(state, i, self.ahead)) >= limit
+        return int(machine_searching(i, bound, CHILD)(state, i, self.ahead)) >= limit

@@ -25,7 +25,7 @@ from cratous.core.assignment.anytime import (
     timed,
 )
 from cratous.core.assignment.chains import chains_below
-from cratous.core.assignment.compiled import SMALL_TASKS
+from cratous.core.assignment.compiled import is_moderate
 from cratous.core.assignment.instance import TASKS_MAX, Instance
 from cratous.core.assignment.layers import DEALS_TASKS
 from cratous.core.assignment.optimality import shows_optimal
@@ -153,11 +153,11 @@ def _searched(
     problem: AssignmentProblem, limits: Limits, branches: tuple[Part, ...], complete: bool,
     progress: Progress | None,
 ) -> tuple[_Run, list[Proof]]:  # fmt: skip
-    if any(len(part.tasks) > SMALL_TASKS for part in branches):
+    made = [arrays(problem, part) for part in branches]
+    if not all(map(is_moderate, made)):
         pending_compilation.ready(pending_compilation.ASSIGNMENT)
     if limits.seconds is not None:
         warm()
-    made = [arrays(problem, part) for part in branches]
     rules = [
         None if is_exact(problem, part) else settler(problem, part, instance)
         for part, instance in zip(branches, made, strict=True)

@@ -10,7 +10,7 @@ from cratous.core.assignment.annealing import anneal, leaf
 from cratous.core.assignment.anytime import estimate, greedy, improve, rebuilt, rough_bound
 from cratous.core.assignment.by_sets import by_sets
 from cratous.core.assignment.chains import chains_below, descend
-from cratous.core.assignment.compiled import machine_for
+from cratous.core.assignment.compiled import MODERATE_TASKS, machine_for
 from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.large_neighbourhoods import rebuild, time_chains
 from cratous.core.assignment.layers import first_state, look_ahead, refute, shortest
@@ -72,19 +72,21 @@ def warm_passes(i: Instance) -> None:
 
 
 def simple_instance(semantics: str) -> Instance:
-    """An assignment problem of four tasks in sequence; smaller ones are solved in CPython."""
-    return _instance(".(p1 p2 p3 p4)", (1,), semantics)
+    """An assignment problem of tasks in sequence; smaller ones are begun in CPython."""
+    return _instance(".", (1,), semantics)
 
 
 def wide_instance(semantics: str) -> Instance:
-    """An assignment problem of four tasks that any of four vehicles may serve; with fewer combinations it would be
-    solved in CPython."""
-    return _instance("|(p1 p2 p3 p4)", (1, 2, 3, 4), semantics)
+    """An assignment problem of tasks that any of four vehicles may serve; with fewer combinations it would be solved
+    in CPython."""
+    return _instance("|", (1, 2, 3, 4), semantics)
 
 
-def _instance(relations: str, vehicles: tuple[int, ...], semantics: str) -> Instance:
-    rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
-    choices = tuple(Choice(task, 1, 1, vehicles) for task in (1, 2, 3, 4))
+def _instance(operator: str, vehicles: tuple[int, ...], semantics: str) -> Instance:
+    count = MODERATE_TASKS + 1
+    rows = tuple(tuple(None if a == b else 1 for b in range(count)) for a in range(count + 1))
+    choices = tuple(Choice(task, 1, 1, vehicles) for task in range(1, count + 1))
+    relations = f"{operator}({' '.join(f'p{one.task_id}' for one in choices)})"
     p = AssignmentProblem(
         "", vehicles, (0,) * len(vehicles), choices, (rows,) * len(vehicles), relations,
         semantics=semantics,

@@ -25,6 +25,7 @@ import numpy as np
 import cratous
 from cratous.core.assignment.annealing import anneal
 from cratous.core.assignment.anytime import greedy, improve
+from cratous.core.assignment.compiled import MODERATE_TASKS
 from cratous.core.assignment.layers import look_ahead, tables
 from cratous.core.files.private_cache import private_cache
 from cratous.core.geofence.mission_leg_arrays import first_bad, table
@@ -77,13 +78,16 @@ def begin(missions: Iterable[Mission]) -> None:
         _begin(LEGS, (first_bad,))
     if any(task.kind in AREAS for one in known for task in one.tasks):
         _begin(SQUARES, SQUARE_LOOPS)
-    if any(len(one.tasks) >= MANY_TASKS for one in known):
-        _begin_planning(pending_compilation.ASSIGNMENT)
+    tasks = max((len(one.tasks) for one in known), default=0)
+    if tasks >= MANY_TASKS:
+        # of so many tasks CPython mostly solves the assignment sooner
+        _begin_planning(pending_compilation.ASSIGNMENT, BEHIND * (tasks <= MODERATE_TASKS))
     large = [one for one in known if len(one.tasks) >= MANY_ROUTES]
     if large:
-        _begin_planning(
+        name = (
             pending_compilation.AROUND if any(map(expected, large)) else pending_compilation.ROUTES
         )
+        _begin_planning(name, BEHIND)  # CPython finds the routes of most missions sooner
 
 
 def _begin(name: str, loops: tuple[Callable[..., object], ...]) -> None:
@@ -97,17 +101,17 @@ def _begin(name: str, loops: tuple[Callable[..., object], ...]) -> None:
 
 def begin_all() -> None:
     """Start compiling what every larger plan needs, unless it is cached."""
-    for name in (pending_compilation.ROUTES, pending_compilation.ASSIGNMENT):
-        _begin_planning(name)
+    _begin_planning(pending_compilation.ROUTES, BEHIND)
+    _begin_planning(pending_compilation.ASSIGNMENT, 0)
 
 
-def _begin_planning(name: str) -> None:
-    """Start compiling what the planner waits for, unless it is cached."""
+def _begin_planning(name: str, stands_back: int) -> None:
+    """Start compiling what the planner waits for, unless it is cached; stands_back: by how much its priority is lower."""
     if is_kept(LOOPS[name]):
         return
     process = _start([__name__, name])
-    if name != pending_compilation.ASSIGNMENT:  # CPython finds the routes of most missions sooner
-        _stand_back(process, BEHIND)
+    if stands_back:
+        _stand_back(process, stands_back)
     pending_compilation.expect(name, _waiter(process, WAIT_S))
 
 

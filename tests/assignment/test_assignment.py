@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cratous.core.assignment import compiled as assignment_compiled
+from cratous.core.assignment import layers
 from cratous.core.assignment.earliest_times import (
     Times,
     Unmet,
@@ -16,6 +17,7 @@ from cratous.core.assignment.earliest_times import (
     next_wait_ms,
     rows_hold,
 )
+from cratous.core.readings import tiered
 from cratous.services.planning.assign import Limits, solve
 from cratous.services.planning.assign_certificate import certified, verify
 from cratous.services.planning.assign_replay import replayed
@@ -206,7 +208,26 @@ def test_small_and_compiled_searches_say_the_same(text, monkeypatch):
     of = problem(5, text, count=3)
     one = solve(of)
     monkeypatch.setattr(assignment_compiled, "SMALL_TASKS", 0)
+    monkeypatch.setattr(assignment_compiled, "MODERATE_TASKS", 0)
     two = solve(of)
+    assert (one.steps, one.bound, one.nodes) == (two.steps, two.bound, two.nodes)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "~(p1 |(p2 p3 p4) p5 p6)", "+(.(p1 p2) |(p2 p3 p4 p5 p6))_[0-1300]"]
+)
+def test_a_moderate_search_is_begun_without_the_compiler_and_says_the_same(text, monkeypatch):
+    of = problem(5, text, count=6)
+    monkeypatch.setattr(assignment_compiled, "SMALL_TASKS", 0)
+    with monkeypatch.context() as without:
+        without.setattr(assignment_compiled, "MODERATE_TASKS", 0)
+        one = solve(of)
+    compiled: list[str] = []
+    monkeypatch.setattr(assignment_compiled, "machine", lambda f: compiled.append(f.__name__))
+    monkeypatch.setattr(tiered, "_chosen", lambda function, _work: function)
+    layers.forget()
+    two = solve(of)
+    assert compiled == []
     assert (one.steps, one.bound, one.nodes) == (two.steps, two.bound, two.nodes)
 
 

@@ -11,6 +11,7 @@ import pytest
 
 from cratous.core.assignment import layers
 from cratous.core.assignment.anytime import greedy, timed
+from cratous.core.assignment.compiled import MODERATE_TASKS
 from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.lower_bounds import least_until, shortest_ways, ways_hold
 from cratous.core.assignment.repair import repaired
@@ -178,7 +179,7 @@ def test_what_is_counted_of_a_flight_is_the_same_after_another() -> None:
 def test_ways_of_large_assignments_are_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     kept = layers._Found(2)
     monkeypatch.setattr(layers, "_FOUND", kept)
-    i = arrays_of(problem(5, 2))
+    i = arrays_of(problem(MODERATE_TASKS + 1, 2))
     layers.shortest(i, i.may)
     assert kept._made == {}
 

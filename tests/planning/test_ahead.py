@@ -19,6 +19,7 @@ import pytest
 from cratous.bridge.text_protocol.keys import KEY_VARIABLE
 from cratous.core.assignment.annealing import anneal
 from cratous.core.assignment.anytime import greedy, improve
+from cratous.core.assignment.compiled import MODERATE_TASKS
 from cratous.core.assignment.layers import look_ahead, tables
 from cratous.core.assignment.problem import START
 from cratous.core.assignment.tables import latest_tables
@@ -74,6 +75,15 @@ def mission(tasks: int, zone: Zone | None = None) -> Mission:
     return dataclasses.replace(made, zones=() if zone is None else (zone,))
 
 
+def in_any_order(count: int) -> AssignmentProblem:
+    """So many tasks for one vehicle."""
+    tasks = range(1, count + 1)
+    choices = tuple(Choice(t, 1, 1, (1,)) for t in tasks)
+    rows = tuple(tuple(None if a == b else 1 for b in range(count)) for a in range(count + 1))
+    text = f"|({' '.join(f'p{t}' for t in tasks)})"
+    return AssignmentProblem("", (1,), (0,), choices, (rows,), text)
+
+
 def wall(east_m: float) -> Zone:
     """A zone across the way north, or beside it."""
     corners = ((2000.0, east_m), (2000.0, east_m + 9000), (2200.0, east_m + 9000), (2200.0, east_m))
@@ -111,6 +121,10 @@ def test_what_may_not_be_needed_stands_back(
     monkeypatch.setattr(ahead, "_stand_back", lambda process, by: back.append((process.name, by)))
     ahead.begin([mission(ahead.MANY_ROUTES)])
     assert back == [(ROUTES, ahead.BEHIND)]
+    ahead.begin([mission(MODERATE_TASKS + 1)])
+    assert len(back) == 1
+    ahead.begin([mission(MODERATE_TASKS)])
+    assert back[1:] == [(ASSIGNMENT, ahead.BEHIND)]
 
 
 def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
@@ -130,11 +144,10 @@ def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
 def test_who_needs_machine_code_waits_for_it_once(begun: list[Started]) -> None:
     ahead.begin([mission(ahead.MANY_ROUTES)])
     assert [process.name for process in begun] == [ASSIGNMENT, ROUTES]
-    choices = tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4))
-    rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
-    problem = AssignmentProblem("", (1,), (0,), choices, (rows,), "|(p1 p2 p3 p4)")
+    assert solve(in_any_order(MODERATE_TASKS)).cost is not None
+    assert [process.waits for process in begun] == [0, 0]
     for _ in range(2):
-        assert solve(problem).cost is not None
+        assert solve(in_any_order(MODERATE_TASKS + 1)).cost is not None
     # that a process failed is no reason to wait again, nor not to plan
     assert [process.waits for process in begun] == [1, 0]
 

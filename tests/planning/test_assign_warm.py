@@ -7,17 +7,19 @@ from pathlib import Path
 
 import pytest
 
-from cratous.core.assignment.compiled import is_brief
+from cratous.core.assignment.compiled import is_brief, is_moderate
 from cratous.core.readings.machine.compiled import machine
 from cratous.services.planning import assign_warm
 from cratous.spec.assignment.search import ORDER, TIME
 
-NAMES = ("machine_for", "machine_after", "machine_for_pass")
+NAMES = ("machine_for", "machine_after", "machine_for_pass", "machine_searching")
 
 
 @pytest.mark.parametrize("semantics", [TIME, ORDER])
 def test_a_wide_instance_is_searched_in_machine_code_from_the_start(semantics: str) -> None:
     assert not is_brief(assign_warm.wide_instance(semantics))
+    assert not is_moderate(assign_warm.wide_instance(semantics))
+    assert not is_moderate(assign_warm.simple_instance(semantics))
 
 
 @pytest.mark.slow
