@@ -40,6 +40,7 @@ ITEMS = (
     ("G4", rf"authority over vehicle {NUMBER}", "authority"),
     ("G4", rf"take-off of vehicle {NUMBER}", "take-off"),
     ("G4", rf"what vehicle {NUMBER} does after a failure", "failed"),
+    ("G4", rf"failures of vehicle {NUMBER} are declared when due", "due"),
     ("G5", rf"what vehicle {NUMBER} flies without the link", "alone"),
     ("G5", rf"circle of vehicle {NUMBER} at the end", "circle"),
     ("G5", rf"heartbeat to the ICAROUS instance of {NUMBER}", "to"),

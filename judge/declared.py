@@ -27,6 +27,26 @@ class Declared(NamedTuple):
     said: int
 
 
+class Event(NamedTuple):
+    """A message from which it follows whether a failure is due. word: what it says in short; data: its other fields as far
+    as they are needed.
+    """
+
+    kind: str
+    time_ms: int
+    word: str
+    data: Node
+
+
+SHORT = {
+    "FailureCheck": "Failure", "FailureState": "Failure", "GateState": "Owner", "HandState": "Change",
+    "LinkLossState": "Mode", "TakeOffState": "Mode",
+}  # fmt: skip
+"""The field of a message that says it in short."""
+OF_HAND = ("Expiry", "Surprises")
+BLOCKED_NOTE = "blocked: "
+
+
 def after_failure(data: Node) -> AfterFailure:
     """The section as logged, or as in the mission file. BadInput if it is malformed."""
     of = frozenset(one.one_of(*KINDS).capitalize() for one in data.get("of", list(KINDS)))
@@ -44,3 +64,27 @@ def read_declared(log: Any, body: Node, _time_ms: int) -> None:
     vehicle, failure = body["VehicleID"].whole, body["Failure"].one_of(*NAMES)
     said = Declared(body["Time"].whole, failure, len(log.alone.get(vehicle, [])))
     log.declared.setdefault(vehicle, []).append(said)
+
+
+def read_check(_log: Any, body: Node, _time_ms: int) -> None:
+    """Refuse a malformed `FailureCheck` or `UxasHeard`: `note_due` keeps them."""
+    _ = body["VehicleID"].whole, body["Time"].whole
+
+
+def note_due(log: Any, kind: str, body: Node) -> None:
+    """Keep a message from which it follows whether a failure is due, in the order of the log."""
+    if kind in SHORT:
+        word = body[SHORT[kind]].text
+    elif kind == "UxasHeard":
+        word = str(body["Heard"].flag)
+    elif kind == "TaskProgress":
+        blocked = body["Phase"].text == "Failed" and body["Note"].text.startswith(BLOCKED_NOTE)
+        word = "Blocked" if blocked else ""
+    else:
+        return
+    data = body
+    if kind != "FailureCheck":  # of a certificate two numbers are needed, of others none
+        numbers = {name: body[name].whole for name in OF_HAND} if kind == "HandState" else {}
+        data = Node(numbers, body.where, body.item)
+    event = Event(kind, body["Time"].whole, word, data)
+    log.due.setdefault(body["VehicleID"].whole, []).append(event)

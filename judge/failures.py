@@ -46,7 +46,7 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         checks = len(said) + len(declared)
         note = ", ".join(f"{one.failure} at {seconds(one.time_ms)}" for one in declared)
         note = ", ".join([note, *(f"{one.mode} from {seconds(one.time_ms)}" for one in said)])
-        note = note or "it declared no failure; whether one was due is not checked"
+        note = note or "it declared no failure"
         note += f"; it {place.words()}" if place else ""
         if faults:
             at, text = min(faults)

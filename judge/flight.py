@@ -10,6 +10,7 @@ from typing import Any
 from cratous.judge import (
     authority,
     compare,
+    due,
     failures,
     heartbeat,
     log,
@@ -130,6 +131,7 @@ def judged(mission: Mission, found: log.Log) -> list[Row]:
     rows += take_off.rows(mission, found, flown)
     rows += lost_link.rows(mission, found, flown)
     rows += failures.rows(mission, found, flown)
+    rows += due.rows(mission, found)
     rows += safe_state.rows(mission, found, flown)
     rows += heartbeat.rows(mission, found, _unsafe(safe))
     doubts = list(found.doubts)

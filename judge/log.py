@@ -13,7 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cratous.judge.declared import Declared, read_declared, read_hand
+from cratous.judge.declared import Declared, Event, note_due, read_check, read_declared, read_hand
 from cratous.judge.fields import Node
 from cratous.spec.errors import BadInput
 
@@ -23,7 +23,7 @@ NEW = (*OLD, "address", "sender_group", "entity_id", "service_id", "content_type
 KINDS = (
     "TruthState", "AirVehicleState", "TaskProgress", "MissionEnd", "GateState", "GatedCommand",
     "CommandDropped", "AuthorityChange", "Heartbeat", "BridgeStatus", "PlanAccepted", "LinkLossState",
-    "TakeOffState", "FailureState", "HandState",
+    "TakeOffState", "FailureState", "HandState", "FailureCheck", "UxasHeard",
 )  # fmt: skip
 FLOWN = ("North", "East", "Altitude", "VelocityNorth", "VelocityEast", "VelocityDown")
 PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
@@ -126,6 +126,7 @@ class Log:
     alone: dict[int, list[Alone]] = field(default_factory=dict)
     declared: dict[int, list[Declared]] = field(default_factory=dict)
     hands: dict[int, list[tuple[int, str]]] = field(default_factory=dict)
+    due: dict[int, list[Event]] = field(default_factory=dict)
     leaving: dict[int, list[Leaves]] = field(default_factory=dict)
     ends: list[tuple[int, str]] = field(default_factory=list)
     planned: frozenset[int] = frozenset()
@@ -286,6 +287,7 @@ def _message(log: Log, kind: str, seq: int, time_ms: int, body: Any) -> None:
         )  # fmt: skip
     node = Node(_json(body, str(log.path), item), str(log.path), item)
     _READERS[kind](log, node, time_ms)
+    note_due(log, kind, node)
 
 
 def _truth(log: Log, body: Node, _time_ms: int) -> None:
@@ -382,6 +384,8 @@ _READERS = {
     "TakeOffState": _leaves,
     "FailureState": read_declared,
     "HandState": read_hand,
+    "FailureCheck": read_check,
+    "UxasHeard": read_check,
 }
 
 

@@ -73,6 +73,7 @@ from cratous.services.flight.vehicle import VehicleNode
 from cratous.services.icarous import state as icarous
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import (
+    Checks,
     Fails,
     Foresees,
     FromInstance,
@@ -337,10 +338,8 @@ class Flight:
 
     def _stands_still(self) -> bool:
         """Whether an injected fault silences ICAROUS at present."""
-        simulation = self.mission.simulation
-        if not isinstance(simulation, FaultySimulation):
-            return False
-        return simulation.bridge_faults.icarous_is_silent(self.now_ms)
+        one, now_ms = self.mission.simulation, self.now_ms
+        return isinstance(one, FaultySimulation) and one.bridge_faults.icarous_is_silent(now_ms)
 
     def _handled(self, vid: int, message: ToInstance) -> None:
         state, out = self.icarous[vid].handle(self.icarous_states[vid], message)
@@ -368,7 +367,7 @@ class Flight:
                     self._instance(vid, given._replace(hand=hand))
                 case Offers(vid) | Uncertified(vid):
                     self._vehicle(vid, Held(self.now_ms, answer))
-                case Foresees(vid) | TakesOff(vid) | Hears(vid) | Merges(vid):
+                case Foresees(vid) | Checks(vid) | TakesOff(vid) | Hears(vid) | Merges(vid):
                     self._publish(of_instance(answer), f"icarous/{vid}")
                 case WithoutLink(vid) | Fails(vid):
                     self._publish(of_instance(answer), f"icarous/{vid}")

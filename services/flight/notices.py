@@ -11,6 +11,7 @@ from cratous.services.flight.commands import SENDERS
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.holding import Change
 from cratous.services.icarous.messages import (
+    Checks,
     Fails,
     Foresees,
     Guides,
@@ -170,7 +171,26 @@ def failure_state(said: Fails) -> Any:
     )
 
 
-def of_instance(said: Foresees | WithoutLink | Fails | TakesOff | Hears | Merges) -> Any:
+def failure_check(said: Checks) -> Any:
+    """A `FailureCheck`: what a failure follows from at a heartbeat, and which one is due next."""
+    seen = said.seen
+    return lmcp.new(
+        "FailureCheck",
+        VehicleID=said.vehicle_id,
+        Time=said.now_ms,
+        OnGround=said.on_ground,
+        Stopped=seen.stopped,
+        Flies=seen.flies,
+        Without=seen.without,
+        Since=seen.since_ms,
+        Surprised=seen.surprised,
+        Expiry=seen.expiry_ms,
+        Failure=said.due.kind,
+        DueBy=said.due.by_ms,
+    )
+
+
+def of_instance(said: Foresees | WithoutLink | Fails | Checks | TakesOff | Hears | Merges) -> Any:
     """An instance's notice for the record, as a message."""
     match said:
         case Foresees():
@@ -179,6 +199,8 @@ def of_instance(said: Foresees | WithoutLink | Fails | TakesOff | Hears | Merges
             return link_loss_state(said)
         case Fails():
             return failure_state(said)
+        case Checks():
+            return failure_check(said)
         case TakesOff():
             return take_off_state(said)
         case Hears():

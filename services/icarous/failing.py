@@ -22,7 +22,10 @@ from cratous.core.authority.failure import (
     Seen,
     failure_step,
 )
+from cratous.core.authority.failure_due import failure_due
+from cratous.core.authority.link_loss import FINAL, LANDED
 from cratous.services.icarous.messages import (
+    Checks,
     Fails,
     FromInstance,
     Offers,
@@ -74,15 +77,22 @@ class Failing(NamedTuple):
         return self.failure.kind != NONE
 
 
-def watched(before: Failing, asked: Asked, beat: Beat, sensed: Sensed) -> Failing:
-    """The state after a heartbeat."""
+def watched(
+    before: Failing, asked: Asked, beat: Beat, sensed: Sensed, vehicle_id: int
+) -> tuple[Failing, tuple[Checks | Fails, ...]]:
+    """The state after a heartbeat, and for the record what was checked, and a failure that is declared."""
+    if before.declared or beat.mode in (FINAL, LANDED):
+        return before, ()
     hand, without, since_ms = sensed.hand, before.without, before.since_ms
     # without any certificate since the takeover, nothing has been permitted against what is known
     surprised = not before.had or hand.surprises != before.surprises
     seen = Seen(beat.stopped, beat.flies, without, since_ms, surprised, hand.expiry_ms)
-    reserve_ms = RESERVE_BEATS * beat.beat_ms
-    failure = failure_step(before.failure, asked, seen, beat.mode, sensed.now_ms, reserve_ms)
-    return before._replace(failure=failure)
+    reserve_ms, now_ms = RESERVE_BEATS * beat.beat_ms, sensed.now_ms
+    due = failure_due(asked, seen, beat.mode, now_ms, reserve_ms)
+    checks = Checks(vehicle_id, now_ms, sensed.on_ground, seen, due)
+    failure = failure_step(before.failure, asked, seen, beat.mode, now_ms, reserve_ms)
+    after = before._replace(failure=failure)
+    return after, (checks, told(after, vehicle_id)) if after.declared else (checks,)
 
 
 def told(failing: Failing, vehicle_id: int) -> Fails:

@@ -38,7 +38,7 @@ from cratous.services.icarous.course_permits import TAKEN, refused, refused_soon
 from cratous.services.icarous.foresight import ON_PATH_M, scene_of
 from cratous.services.icarous.landing import approaches, in_order
 from cratous.services.icarous.lost_link import LostLink, NoLink
-from cratous.services.icarous.messages import Fails, Sensed, WithoutLink
+from cratous.services.icarous.messages import Checks, Fails, Sensed, WithoutLink
 from cratous.services.icarous.proposal import AGAIN_MS, manoeuvre
 from cratous.services.icarous.return_to_path import bearing_rad, flat, onto, rejoin
 from cratous.services.icarous.state import IDLE, Config, State
@@ -120,22 +120,23 @@ def heartbeat(
     return after, (WithoutLink(vid, now_ms, mode, chosen, heard_ms, why),)
 
 
-def declared(config: Config, state: State, sensed: Sensed) -> tuple[State, tuple[Fails, ...]]:
-    """The state with a failure that is declared now, and what was flown by itself until then left."""
+def declared(
+    config: Config, state: State, sensed: Sensed
+) -> tuple[State, tuple[Checks | Fails, ...]]:
+    """The state with a failure that is declared now, what was flown by itself until then left, and what is recorded."""
     if config.on_failure is None:
         return state, ()
     before, loss = state.failing, state.no_link.loss
     flies = state.cycle.mode != MONITOR
     asked, beat_ms = config.on_failure.asked, config.heartbeat_ms
     seen = failing.Beat(loss.mode, flies, state.told.stopped, beat_ms)
-    now = failing.watched(before, asked, seen, sensed)
+    now, said = failing.watched(before, asked, seen, sensed, config.vehicle_id)
     loss = loss_declared(before.failure, now.failure, loss)
     state = replace(state, failing=now, no_link=state.no_link._replace(loss=loss))
-    if now.declared == before.declared:
-        return state, ()
-    # what follows is no continuation of what was flown without the link
-    state = replace(state, no_link=state.no_link._replace(course=None))
-    return state, (failing.told(now, config.vehicle_id),)
+    if now.declared != before.declared:
+        # what follows is no continuation of what was flown without the link
+        state = replace(state, no_link=state.no_link._replace(course=None))
+    return state, said
 
 
 def _out_of_hand(state: State) -> bool:

@@ -10,6 +10,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from cratous.bridge.text_protocol import Message
+from cratous.core.authority.failure import Seen
+from cratous.core.authority.failure_due import Due
 from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.drift import NONE, Off
 from cratous.core.avoidance.manoeuvre import Ability, Motion
@@ -115,6 +117,19 @@ class Fails(NamedTuple):
     reason: str
 
 
+class Checks(NamedTuple):
+    """To the record, at each heartbeat until a failure is declared: what it follows from, and which one is due next.
+
+    on_ground: it has not taken off yet; seen, due: as in `core.authority.failure_due`.
+    """
+
+    vehicle_id: int
+    now_ms: int
+    on_ground: bool
+    seen: Seen
+    due: Due
+
+
 class TakesOff(NamedTuple):
     """To the record. mode: the vehicle's take-off mode, as a code of `core.authority.take_off`; heard_ms:
     when UxAS was last heard.
@@ -207,6 +222,7 @@ FromInstance = (
     | Guides
     | WithoutLink
     | Fails
+    | Checks
     | TakesOff
     | Merges
     | Tells

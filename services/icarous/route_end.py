@@ -1,8 +1,9 @@
 """The end of the announced route: the hold there is checked, and nothing beyond it.
 
 UxAS sends the route for longer than the look-ahead, or to its end, where the vehicle loiters. The circles
-tangent to the end on either side are both checked: each is a stationary disc, which proved kernels permit or
-not. The hold actually flown may be elsewhere: higher, while other vehicles still have tasks, or at a nearby
+tangent to the end on either side are checked: each is a stationary disc, which proved kernels permit or
+not. One that is permitted against everybody suffices, beside the end or straight on: if UxAS circles elsewhere, ICAROUS
+takes over then. The hold actually flown may be elsewhere: higher, while other vehicles still have tasks, or at a nearby
 place where a circle keeps the zones (`services.flight.inflight_routes`); that route is sent once it is flown.
 The hold is not checked against zones: UxAS circles where they are kept, or reports a violation. Straight
 flight is predicted, without a hold, where the vehicle is more than 30 m off its path, more than 2 s of flight
@@ -15,8 +16,8 @@ import math
 from typing import NamedTuple
 
 from cratous.core.avoidance.manoeuvre import Way, looked_at
-from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s, meets
-from cratous.core.avoidance.resolution import Scene
+from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s, meets
+from cratous.core.avoidance.resolution import Scene, first_zone_s
 from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
 from cratous.services.icarous.messages import Sensed
 from cratous.spec.mission import Position, WellClear, Zone
@@ -25,6 +26,10 @@ TURN_MARGIN = 1.1
 """Turns of a way back and of a loiter are this much wider than the tightest."""
 TRACKING_S = 1.0
 """Tracking error on a circle: less than the distance flown in this time [s]."""
+FARTHER = (2.0, 4.0, 6.0)
+"""How far past the end a hold is looked for where none is permitted beside it [turn radii]."""
+ZONE_M = 5.0
+"""Least distance of that way from zones [m]."""
 WIDEST = 1.5
 """Where a zone blocks the circle, its radius is up to this many times larger."""
 
@@ -50,7 +55,8 @@ class Beside(NamedTuple):
 class Ahead(NamedTuple):
     """The predicted route, the volumes that it must keep clear, and the candidate holds at its end.
 
-    volumes: each is checked along the route; held: volume whose cylinder the holds must keep clear; rise_m:
+    volumes: each is checked along the route; holds: one that is clear of everybody, else all of them; held: volume whose
+    cylinder the holds must keep clear; rise_m:
     vertical deviation in a hold [m]; beside: result of the zone check for the holds.
     """
 
@@ -119,7 +125,47 @@ def with_hold(
     if beyond is None:
         return Ahead(pieces, (own, around), (), around, rise_m, before)
     holds, beside = _holds(beyond, sensed, scene, margin, before)
+    free = (hold for hold in holds if _is_free(hold, scene.intruders, around, rise_m))
+    one = next(free, None)
+    if one is not None:
+        return Ahead(pieces, (own, around), (one,), around, rise_m, beside)
+    farther = _hold_farther(beyond, sensed, scene, margin, (own, around))
+    if farther is not None:
+        on, far = farther
+        return Ahead((*pieces, on), (own, around), far, around, rise_m, beside)
     return Ahead(pieces, (own, around), holds, around, rise_m, beside)
+
+
+def _hold_farther(
+    beyond: Piece, sensed: Sensed, scene: Scene, margin: float, volumes: tuple[WellClear, ...]
+) -> tuple[Piece, tuple[Hold, ...]] | None:
+    """A clear way straight on from the end, level, and a hold there that is permitted; no hold if the way lasts longer
+    than is looked at; None if there is none. volumes: for the way; the last one for the hold.
+    """
+    rise_m = TRACKING_S * sensed.ability.max_climb_m_s
+    level = beyond._replace(velocity=beyond.velocity._replace(down_m_s=0.0))
+    for radii in FARTHER:
+        on_s = radii * margin / sensed.ability.turn_rate_rad_s
+        left_s = beyond.duration_s - on_s
+        on = level if left_s <= 0.0 else level._replace(duration_s=on_s)
+        if any(meets((on,), other, volume) for other in scene.intruders for volume in volumes):
+            return None
+        if first_zone_s((on,), scene.zones, ZONE_M) is not None:
+            return None
+        if left_s <= 0.0:
+            return on, ()
+        start_s, there = beyond.start_s + on_s, after(level, on_s)
+        later = level._replace(start_s=start_s, duration_s=left_s, position=there)
+        holds, beside = _holds(later, sensed, scene, margin, None)
+        for hold in holds if beside.obey else ():
+            if _is_free(hold, scene.intruders, volumes[-1], rise_m):
+                return on, (hold,)
+    return None
+
+
+def _is_free(hold: Hold, intruders: tuple[Intruder, ...], volume: WellClear, rise_m: float) -> bool:
+    """Whether a hold keeps the volume clear of all intruders."""
+    return all(hold_permits(hold.piece, o, volume, hold.radius_m, rise_m) for o in intruders)
 
 
 def _holds(

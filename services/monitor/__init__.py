@@ -17,6 +17,7 @@ from cratous.services.monitor.bridge import BridgeWatch
 from cratous.services.monitor.completion import CompletionWatch
 from cratous.services.monitor.constraints import ConstraintWatch
 from cratous.services.monitor.failure import FailureWatch
+from cratous.services.monitor.failure_due import FailureDueWatch
 from cratous.services.monitor.hand import HandWatch
 from cratous.services.monitor.landing import LandingWatch
 from cratous.services.monitor.link_loss import LinkLossWatch
@@ -66,6 +67,7 @@ class Monitor:
         self.hand = HandWatch.of(mission)
         self.link_loss = LinkLossWatch(mission, self.landing.down, self.presence)
         self.failure = FailureWatch(mission, self.landing.down, self.presence)
+        self.failure_due = FailureDueWatch(mission)
         self.safe_state = SafeStateWatch(mission, self.presence)
         self.take_off = TakeOffWatch(mission, self.presence)
         self.merging = MergeWatch(mission, self.presence)
@@ -131,6 +133,8 @@ class Monitor:
             self.failure.end(body)
             self.take_off.end(body)
             self.hand.end(body.Time)
+        if short in self.failure_due.kinds:
+            self.failure_due.message(short, body)
         if self._tell is not None:
             for k, events in enumerate((self.separation.violations, self.constraints.violations)):
                 for verdict in events[self._told[k] :]:
@@ -187,6 +191,7 @@ class Monitor:
             *self.bridge.verdicts(),
             *self.link_loss.verdicts(),
             *self.failure.verdicts(),
+            *self.failure_due.verdicts(),
             *self.safe_state.verdicts(),
         ]
         there = {v.item for v in found if v.requirement == "G1"}

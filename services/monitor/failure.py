@@ -189,7 +189,7 @@ class FailureWatch(LinkLossWatch):
         note, at_ms, outcome = ", ".join(told.said), None, Outcome.HOLDS
         if down := self._down.get(vehicle):
             note = f"{note}; {down.words()}" if note else down.words()
-        note = note or "it declared no failure; whether one was due is not checked"
+        note = note or "it declared no failure"
         if told.wrong:
             outcome, (at_ms, text) = Outcome.VIOLATED, told.wrong[0]
             note = f"{text}; {note}"

@@ -117,6 +117,11 @@ def failure_item(vehicle: int) -> str:
     return f"what vehicle {vehicle} does after a failure"
 
 
+def failure_due_item(vehicle: int) -> str:
+    """Name of the G4 row on whether a vehicle declared each failure that was due."""
+    return f"failures of vehicle {vehicle} are declared when due"
+
+
 def beat_item(vehicle: int, way: str) -> str:
     """Name of the row on the heartbeats of a vehicle in one direction, `Down` or `Up`."""
     return f"heartbeat {WAYS[way]} the ICAROUS instance of {vehicle}"
@@ -180,7 +185,9 @@ def promised(seen: Watched, present: Collection[str] = ()) -> Iterator[Row]:
     taking_off = [one.id for one in grounded(mission) if one.id in mission.instances]
     yield from (Row("G4", take_off_item(vehicle), (vehicle,)) for vehicle in taking_off)
     if on_failure_of(mission) is not None:
-        yield from (Row("G4", failure_item(vehicle), (vehicle,)) for vehicle in mission.instances)
+        for vehicle in mission.instances:
+            yield Row("G4", failure_item(vehicle), (vehicle,))
+            yield Row("G4", failure_due_item(vehicle), (vehicle,))
     if mission.link_loss is not None:
         for vehicle in mission.instances:
             yield Row("G5", alone_without_link_item(vehicle), (vehicle,))

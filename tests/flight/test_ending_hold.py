@@ -69,6 +69,8 @@ def wall(south_m: float) -> Zone:
     return Zone(1, ZoneKind.KEEP_OUT, sides, 0.0, 1000.0)
 
 
+BEHIND = (wall(600.0 + HOLD_M + 1.0),)
+"""No way leads straight on past the goal."""
 # straight behind, as far from the middle of either circle as the cylinder reaches
 NEAR_M = 600.0 + math.sqrt((WIDE.dthr_m + HOLD_M) ** 2 - RADIUS_M**2)
 ABOVE_M = 300 + WIDE.zthr_m + RISE_M
@@ -80,10 +82,14 @@ ARRIVAL_S = 600.0 / 22.0
     [
         (standing(5000.0), None),
         (standing(600.0 + 400.0, 400.0), None),
-        (standing(600.0, 2 * RADIUS_M), ARRIVAL_S),  # in the way of the hold, to the right or left
+        (standing(600.0, 3 * RADIUS_M), None),  # in the way of the hold on one side alone
+        (standing(600.0, -3 * RADIUS_M), None),
+        (standing(600.0, 2 * RADIUS_M), ARRIVAL_S),  # in the way itself
         (standing(600.0, -2 * RADIUS_M), ARRIVAL_S),
+        # in the way of both, and the way straight on leads past it
+        (standing(600.0, 2.05 * RADIUS_M), None),
         (standing(600.0, 0.0, ABOVE_M + 0.1), None),  # above it
-        (standing(600.0, RADIUS_M, ABOVE_M - 0.1), ARRIVAL_S),
+        (standing(600.0, 0.0, ABOVE_M - 0.1), None),  # above the way straight on
         # comes through the hold later, or in so long that it is not looked at
         (Intruder(9, Position(2000.0, 0.0, 300.0), Velocity(-30.0, 0.0, 0.0)), 30.0),
         (Intruder(9, Position(4000.0, 0.0, 300.0), Velocity(-30.0, 0.0, 0.0)), None),
@@ -102,11 +108,11 @@ def test_the_way_and_the_hold_are_looked_at(other: Intruder, first_s: float | No
 def test_where_the_hold_ends(off_m: float, clear: bool) -> None:
     slow = WellClear(VOLUME.dthr_m, VOLUME.zthr_m, 0.0, 0.0)  # so that the way itself is clear
     other = standing(NEAR_M + off_m)
-    found = ahead(other)
+    found = ahead(other, zones=BEHIND)
     assert (found._replace(volumes=(slow,)).first_s(other) is None) is clear
-    assert len(found.holds) == 2
+    assert len(found.holds) == (1 if clear else 2)
     assert sum(piece.duration_s for piece in found.pieces) == pytest.approx(ARRIVAL_S)
-    assert [hold.piece.start_s for hold in found.holds] == pytest.approx([ARRIVAL_S, ARRIVAL_S])
+    assert all(hold.piece.start_s == pytest.approx(ARRIVAL_S) for hold in found.holds)
 
 
 COMES = Intruder(9, Position(2000.0, 0.0, 300.0), Velocity(-30.0, 0.0, 0.0))
@@ -125,20 +131,20 @@ SINKS = Intruder(9, Position(2040.0, 0.0, 530.0), Velocity(-38.4, 0.0, 4.0))
 )
 def test_when_the_hold_is_too_near(other: Intruder, first_s: float | None) -> None:
     """Asked of the holds alone: the way to them has a volume of its own."""
-    found = ahead(other)._replace(volumes=()).first_s(other)
+    found = ahead(other, zones=BEHIND)._replace(volumes=()).first_s(other)
     if first_s is None or found is None:
         assert found is first_s
     else:  # early by at most a 64th of the hold, never late
         assert first_s - (60.0 - ARRIVAL_S) / 64 <= found <= first_s + 1e-9
     if other is SINKS:
         wide = WellClear(WIDE.dthr_m + HOLD_M, WIDE.zthr_m + RISE_M, 0.0, 0.0)
-        holds = [hold.piece for hold in ahead(other).holds]
+        holds = [hold.piece for hold in ahead(other, zones=BEHIND).holds]
         assert all(first_violation_s((hold,), other, wide) is None for hold in holds)
 
 
 def test_a_zone_near_the_hold_makes_it_wider() -> None:
     clear = ahead(zones=(wall(GOAL.north_m + HOLD_M + 0.1),))
-    assert [hold.radius_m for hold in clear.holds] == pytest.approx([HOLD_M, HOLD_M])
+    assert [hold.radius_m for hold in clear.holds] == pytest.approx([HOLD_M])
     (wide,) = ahead(zones=(wall(GOAL.north_m + HOLD_M - 0.1),)).holds
     assert wide.piece.position == GOAL
     assert wide.radius_m == pytest.approx(2 * WIDEST * RADIUS_M + TRACKING_S * 22.0)
@@ -201,6 +207,53 @@ def test_a_drone_that_hovers_behind_the_goal_is_in_nobodys_way(behind_m: float) 
     assert (result.outcome, result.takeovers) == ("complete", 0)
     assert result.end_ms < 70_000
     assert not of_type(log, "Conflict")
+
+
+@pytest.mark.parametrize(("north_m", "east_m"), [(1500, 250), (1500, -250), (1500, 195), (1420, 200), (1650, 250)])  # fmt: skip
+def test_a_drone_that_hovers_beside_the_goal_is_in_nobodys_way(
+    north_m: float, east_m: float
+) -> None:
+    """A circle on the other side keeps clear of it, or the way straight on; the mission ends at the goal."""
+    mission = load(MISSION)
+    (drone,) = mission.traffic
+    place = Position(float(north_m), float(east_m), 300.0)
+    result, log = flown(replace(mission, traffic=(replace(drone, position=place),)))
+    assert (result.outcome, result.takeovers) == ("complete", 0)
+    assert result.end_ms < 70_000
+    assert not of_type(log, "Conflict")
+
+
+@pytest.mark.parametrize("east_m", [250.0, -195.0])
+def test_one_that_circles_beside_it_is_led_away_once(east_m: float) -> None:
+    """Another vehicle still flies: this one circles at its goal, towards the drone or not, and keeps clear of it."""
+    mission = load(MISSION)
+    (drone,), (first,), (task,) = mission.traffic, mission.vehicles, mission.tasks
+    place = Position(1500.0, east_m, 300.0)
+    other = replace(first, id=2, position=Position(0.0, 8000.0, 300.0))
+    later = replace(must_fly(2, (3000.0, 8000.0, 300.0)), eligible=(2,))
+    whole = replace(
+        mission,
+        vehicles=(first, other),
+        tasks=(replace(task, eligible=(1,)), later),
+        traffic=(replace(drone, position=place),),
+    )
+    result, log = flown(whole)
+    assert (result.outcome, result.takeovers) == ("complete", 1)
+    # it circles in a layer of its own
+    level = [
+        one for one in of_type(log, "TruthState")
+        if one.VehicleID == 1 and abs(one.Altitude - 300.0) <= 30.0
+    ]  # fmt: skip
+    assert max(one.Time for one in level) > 75_000
+    assert min(math.dist((one.North, one.East), (1500.0, east_m)) for one in level) > 187.5
+
+
+def test_a_hold_must_be_clear_of_everybody() -> None:
+    """One on each side: neither circle is, and the way straight on is barred."""
+    pair = (standing(600.0, 3 * RADIUS_M), standing(600.0, -3 * RADIUS_M))
+    assert len(ahead(*pair, zones=BEHIND).holds) == 2
+    assert any(ahead(*pair, zones=BEHIND).meets(one) for one in pair)
+    assert not any(ahead(*pair).meets(one) for one in pair)
 
 
 def test_the_way_is_told_to_its_end_or_farther_than_is_looked() -> None:

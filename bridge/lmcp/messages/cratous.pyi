@@ -628,3 +628,44 @@ class FailureState(LmcpObject):
         IntruderID: int = ...,
         Reason: str = ...,
     ) -> None: ...
+
+class FailureCheck(LmcpObject):
+    """cratous.FailureCheck: CRATOUS type 23."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    OnGround: bool
+    """bool, default false."""
+    Stopped: bool
+    """bool, default false."""
+    Flies: bool
+    """bool, default false."""
+    Without: bool
+    """bool, default false."""
+    Since: int
+    """int64 [milliseconds], default 0."""
+    Surprised: bool
+    """bool, default false."""
+    Expiry: int
+    """int64 [milliseconds], default 0."""
+    Failure: _cratous.DeclaredFailure
+    """CRATOUS/DeclaredFailure, default NotDeclared."""
+    DueBy: int
+    """int64 [milliseconds], default 0."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        OnGround: bool = ...,
+        Stopped: bool = ...,
+        Flies: bool = ...,
+        Without: bool = ...,
+        Since: int = ...,
+        Surprised: bool = ...,
+        Expiry: int = ...,
+        Failure: _cratous.DeclaredFailure | str = ...,
+        DueBy: int = ...,
+    ) -> None: ...
