@@ -89,7 +89,7 @@ def _common(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> list[Vec2]:
         return [p for p in (a, b) if on_segment(p, c, d)] + [
             p for p in (c, d) if on_segment(p, a, b)
         ]
-    share = orient(c, d, a) / -across
+    share = orient(c, d, a) / across
     return [Vec2(a.x + share * (b.x - a.x), a.y + share * (b.y - a.y))]
 
 
