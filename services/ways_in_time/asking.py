@@ -13,9 +13,7 @@ from typing import NamedTuple
 
 from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import Piece
-from cratous.core.geofence.separation import separating
-from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
-from cratous.core.routing.visibility import name_of
+from cratous.core.permit.remainder import hold_at, hold_permits
 from cratous.core.ways_in_time.grid import Craft, Grid
 from cratous.core.ways_in_time.scene import Checks, Scene
 from cratous.core.ways_in_time.search import (
@@ -30,6 +28,7 @@ from cratous.core.ways_in_time.search import (
     Search,
 )
 from cratous.services.icarous.route_end import TURN_MARGIN
+from cratous.services.ways_in_time.excluded import excluded
 from cratous.services.ways_in_time.places import places_of
 from cratous.spec.mission import Position
 
@@ -113,21 +112,13 @@ def way_in_time(
 
 def _impossible(asked: Asked, scene: Scene) -> str:
     """Why no path exists at all; "" where that is not known."""
-    start, goal = asked.now.position, asked.goal
-    for name, place in (("start", start), ("goal", goal)):
-        for zone in scene.zones:
-            if not zones_permit(place, (zone,), 0.0):
-                return f"no path at all: the {name} breaks {name_of(zone)}"
+    start = asked.now.position
+    if why := excluded(start, asked.goal, scene.zones, asked.layers_m):
+        return why
     for other in scene.intruders:
         if not hold_permits(hold_at(start, 0.0, 0.0), other, scene.volume, 0.0, 0.0):
-            return f"no path at all: intruder {other.id} is already within its volume"
-    levels = (start.alt_m, goal.alt_m, *asked.layers_m)
-    ids = separating(start, goal, scene.zones, min(levels), max(levels))
-    if not ids:
-        return ""
-    between = f"from {min(levels):g} to {max(levels):g} m"
-    named = ", ".join(str(one) for one in ids)
-    return f"no path at all {between}: the boundaries of zones {named} separate start and goal"
+            return f"its start is within the volume of intruder {other.id}"
+    return ""
 
 
 def _grid(asked: Asked, scene: Scene) -> Grid:

@@ -101,15 +101,15 @@ def test_what_excludes_every_path_is_told_as_that(turned):
         )
     inside = way_in_time(Asked(NOW, GOAL, ABILITY), Scene((goal_in,)))
     assert inside[:2] == (
-        Outcome.NO_PATH, "no path at all: the goal breaks keep-out zone 1"
+        Outcome.NO_PATH, "its end breaks keep-out zone 1"
     )  # fmt: skip
     apart = way_in_time(Asked(NOW, GOAL, ABILITY), Scene(tuple(walls)))
     assert apart.outcome is Outcome.NO_PATH
-    assert "the boundaries of zones 1, 2, 3, 4 separate start and goal" in apart.reason
+    assert "zones 1, 2, 3, 4 together separate start and end" in apart.reason
     close = Intruder(7, Position(100.0, 0.0, 310.0), Velocity(0.0, 0.0, 0.0))
     met = way_in_time(Asked(NOW, GOAL, ABILITY), Scene((), 0.0, (close,), VOLUME))
     assert met[:2] == (
-        Outcome.NO_PATH, "no path at all: intruder 7 is already within its volume"
+        Outcome.NO_PATH, "its start is within the volume of intruder 7"
     )  # fmt: skip
 
 
