@@ -3,7 +3,8 @@
 Candidates are turns that keep clear over the whole look-ahead, up to 60 degrees off the course, or up to 90
 where that is over much sooner. Such a turn is flown until the way back is free at one of the instants
 checked: permanently (permitted to its end against everybody, no zone across it) if possible, else for the
-look-ahead. If there is none, the manoeuvre of least deviation is flown (`core.avoidance.resolution`). Where
+look-ahead. If there is none, a way in time to the waypoint is searched (`timed_way`), and without one the
+manoeuvre of least deviation is flown (`core.avoidance.resolution`). Where
 the mission prefers changes of altitude or speed, these are tried before turns, starting with the bands'
 resolutions. Where nothing keeps well clear, the recovery bands are tried first. This module only proposes:
 control goes back only on a way that is free when it is flown.
@@ -27,11 +28,12 @@ from cratous.core.avoidance.resolution import (
     resolve,
     turn_back_s,
 )
-from cratous.services.icarous.foresight import scene_of, way_back_is_free
+from cratous.services.icarous.foresight import points_back, scene_of, way_back_is_free
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import PERSIST_MS, bearing_rad, goal_index
 from cratous.services.icarous.route_end import cylinder
 from cratous.services.icarous.state import Config, Search, State
+from cratous.services.icarous.timed_way import KIND, Timed, followed, proposed
 from cratous.spec.daa.parameters import NMAC_HALF_HEIGHT_M, NMAC_RADIUS_M
 from cratous.spec.mission import Position, WellClear
 from cratous.spec.records import replace
@@ -69,7 +71,13 @@ def manoeuvre(
     course = bearing_rad(motion.position, goal) if goal is not None else motion.heading_rad
     speed = state.told.speed_m_s or motion.speed_m_s
     scene = scene_of(config, state, sensed)
-    held = state.held
+    held, timed = state.held, state.timed
+    if held is not None and timed is not None:
+        follows = followed(timed, scene, config.daa, sensed)
+        if follows is not None:
+            return replace(state, held=follows), follows
+        held = None
+    state = replace(state, held=held, timed=None)
     lasts = held is not None and not lasted(search.until_ms, now_ms, 0)
     if held is not None and lasts and keeps_clear(motion, sensed.ability, scene, held):
         return state, held
@@ -81,6 +89,10 @@ def manoeuvre(
             waits_ms = patience(state.cycle.relapses, PERSIST_MS) + 2 * config.heartbeat_ms
             search = Search(now_ms, now_ms + math.ceil(1000 * at_s) + waits_ms, found.lasting)
             return replace(state, held=found.choice, search=search), found.choice
+        timed = _in_time(config, state, sensed)
+        follows = None if timed is None else followed(timed, scene, config.daa, sensed)
+        if follows is not None:
+            return replace(state, held=follows, timed=timed), follows
     choice = resolve(motion, sensed.ability, scene, course, speed, held)
     if not choice.clear:
         choice = _recovery(config, state, sensed, choice) or choice
@@ -139,6 +151,14 @@ def _soonest(
     until = found.step - SOONER if found is not None and found.lasting else last
     wide = after_turns(_either_side(WIDE_DEG, right_first), until)
     return wide if wide is not None and wide.lasting else found
+
+
+def _in_time(config: Config, state: State, sensed: Sensed) -> Timed | None:
+    """A way in time onto the path of UxAS; None without a path, or if none is found."""
+    if not state.told.waypoints:
+        return None
+    points = points_back(state, sensed)
+    return proposed(scene_of(config, state, sensed), config.daa, sensed, points)
 
 
 def _by_bands(config: Config, state: State, sensed: Sensed, level: Choice) -> tuple[Choice, ...]:
@@ -218,6 +238,8 @@ def _with_goal(state: State, sensed: Sensed) -> tuple[State, Position | None]:
 def describe(choice: Choice) -> str:
     """A manoeuvre in words, for the record; it says when it is not free of conflict."""
     heading = round(math.degrees(choice.heading_rad)) % 360
+    if choice.kind == KIND:
+        return "a way in time, past all traffic"
     text = f"heading {heading:03d}"
     if choice.kind == "altitude":
         text += f", climb {choice.climb_m_s:+.1f} m/s"

@@ -21,6 +21,7 @@ from cratous.services.icarous.merge_state import Fix, Merging
 from cratous.services.icarous.other_vehicles import Ways
 from cratous.services.icarous.route_end import Beside
 from cratous.services.icarous.route_requests import Asking
+from cratous.services.icarous.timed_way import Timed
 from cratous.services.icarous.traffic_monitor import Threat, Tracks
 from cratous.services.mission.frames import Projection
 from cratous.services.mission.take_off import TakeOff
@@ -116,7 +117,8 @@ class State:
     routes of other own vehicles; asking: requests for a way back; bands: last alerts and bands; no_link:
     state without the link; pace_ms: until when UxAS may be accelerating after a handback [ms]; unheard: UxAS
     was not heard at the last heartbeat; rising: state of the take-off; beside: last zone check for the final
-    hold; merging: state of the merge; failing: a declared failure, and what led to it.
+    hold; merging: state of the merge; failing: a declared failure, and what led to it; timed: the way in time that is
+    flown, None for none.
     """
 
     cycle: Cycle = START
@@ -138,6 +140,7 @@ class State:
     beside: Beside | None = None
     merging: Merging = field(default_factory=Merging)
     failing: Failing = field(default_factory=Failing)
+    timed: Timed | None = None
 
     def paces(self, now_ms: int) -> bool:
         """Whether UxAS may still be accelerating the vehicle to the announced speed after a handback."""

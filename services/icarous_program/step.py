@@ -110,7 +110,7 @@ class Craft:
 class State:
     """instance: its state; gate: of its vehicle; seen: traffic by id; now_ms: time of the last POSTN, None before the
     first on this connection; beat_ms: time of the last heartbeat; lost: incomplete plan and zones; direct: other
-    vehicles' own reports, selves: those for which these are used."""
+    vehicles' own reports, selves: those for which these are used; sensed: at the last heartbeat."""
 
     instance: icarous.State = field(default_factory=icarous.State)
     gate: gates.Gate = UNTOUCHED
@@ -120,6 +120,7 @@ class State:
     lost: Parts = field(default_factory=dict)
     direct: SeenBy = field(default_factory=dict)
     selves: frozenset[int] = frozenset()
+    sensed: Sensed | None = None
 
 
 Step = tuple[State, tuple[Answer, ...]]
@@ -142,7 +143,7 @@ class IcarousEnd:
 
     def __init__(self, craft: Craft) -> None:
         self.craft, self._instance = craft, Instance(craft.config)
-        self._planner = Planner(craft.config.projection, craft.limits)
+        self._planner = Planner(craft.config.projection, craft.limits, craft.config.daa)
 
     def connected(self, state: State) -> Step:
         """A connection has opened: traffic and pending requests are reset, and UxAS is told who commands.
@@ -152,7 +153,7 @@ class IcarousEnd:
         former = state.instance
         asking = Asking(number=former.asking.number)  # UxAS announces again whether it plans live
         instance = replace(former, told=former.told.alone(), asking=asking)
-        state = replace(state, seen={}, now_ms=None, lost={}, instance=instance)
+        state = replace(state, seen={}, now_ms=None, lost={}, instance=instance, sensed=None)
         return state, (Tell(mode_of(state.gate)),)
 
     def handle(self, state: State, line: Message) -> Step:
@@ -195,7 +196,7 @@ class IcarousEnd:
 
     def _route(self, state: State, line: RouteRequest) -> tuple[Answer, ...]:
         """The answer to a WPREQ: a route around the zones in force, or one without points."""
-        lines, why = self._planner.answer(line, state.instance.told.zones)
+        lines, why = self._planner.answer(line, state.instance.told.zones, state.sensed)
         text = why or f"a way of {len(lines) - 2} points"
         note = Note("WARN" if why else "INFO", f"UxAS asks for a route ({line.planner}): {text}")
         return note, *map(Tell, lines)
@@ -352,7 +353,7 @@ class IcarousEnd:
         others = intruders(seen, direct, now_ms, ability, craft.cooperating)
         sensed = Sensed(now_ms, motion, ability, others, state.gate)
         instance, said = self._instance.handle(state.instance, sensed)
-        state = replace(state, instance=instance)
+        state = replace(state, instance=instance, sensed=sensed)
         for one in said:
             match one:
                 case Wish():

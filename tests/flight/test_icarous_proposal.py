@@ -127,7 +127,8 @@ def test_the_turn_is_flown_on_while_it_keeps_clear(monkeypatch: pytest.MonkeyPat
 def test_where_no_way_back_is_free_in_time_the_least_deviation_is_flown(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The search is bounded, and is made again after AGAIN_MS, not before."""
+    """The search is bounded, and is made again after AGAIN_MS, not before. Here no way in time is found either."""
+    monkeypatch.setattr(proposal, "proposed", lambda *_: None)
     looks, state = Looks(monkeypatch), flying(*CONVOY)
     least = resolve(NORTH, ABILITY, scene_of(CONFIG, state, sensed(0, *CONVOY)), 0.0, 22.0, None)
     state, choice = manoeuvre(CONFIG, state, sensed(0, *CONVOY), frozenset(), False)

@@ -1,0 +1,1 @@
+"""Ways over places and in time: past zones, walls, and traffic that moves."""

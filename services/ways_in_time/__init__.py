@@ -1,0 +1,1 @@
+"""Ways past zones and moving traffic, searched over position and time."""

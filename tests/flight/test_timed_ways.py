@@ -1,0 +1,99 @@
+"""A way in time that an instance flies where no manoeuvre leads back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
+
+from cratous.core.authority.gate import ICAROUS, Gate
+from cratous.core.avoidance.manoeuvre import Motion, smallest_turn
+from cratous.core.avoidance.prediction import Intruder, later
+from cratous.core.avoidance.resolution import Choice
+from cratous.services.icarous.inbox import Told
+from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.permits import NONE
+from cratous.services.icarous.proposal import describe, manoeuvre
+from cratous.services.icarous.state import Config, Met, State
+from cratous.services.icarous.timed_way import KIND
+from cratous.spec.mission import Daa, Position, Velocity
+
+CONFIG = Config(1, Daa(VOLUME, buffer=1.25), PROJECTION, 500)
+WAY = (Position(-1000.0, 0.0, 300.0), Position(9000.0, 0.0, 300.0))
+CONVOY = tuple(
+    Intruder(20 + k, Position(500.0 * k, 0.0, 300.0), Velocity(18.0, 0.0, 0.0)) for k in range(1, 6)
+)
+
+
+def sensed(now_ms: int, motion: Motion, others: tuple[Intruder, ...]) -> Sensed:
+    return Sensed(now_ms, motion, ABILITY, others, Gate(ICAROUS, 1, False))
+
+
+def flown(motion: Motion, choice: Choice, beat_s: float) -> Motion:
+    """The motion a heartbeat later: turn rate, acceleration and climb are limited."""
+    steps, (p, heading, speed, _) = 5, motion
+    for _ in range(steps):
+        t = beat_s / steps
+        most = ABILITY.turn_rate_rad_s * t
+        heading += min(max(smallest_turn(heading, choice.heading_rad), -most), most)
+        gain = ABILITY.acceleration_m_s2 * t
+        speed += min(max(choice.speed_m_s - speed, -gain), gain)
+        p = Position(
+            p.north_m + speed * math.cos(heading) * t,
+            p.east_m + speed * math.sin(heading) * t,
+            p.alt_m + choice.climb_m_s * t,
+        )
+    return Motion(p, heading, speed, choice.climb_m_s)
+
+
+def begun() -> State:
+    told = Told(waypoints=WAY, next_index=1, speed_m_s=22.0)
+    return State(told=told, met=tuple(Met(other.id, NONE) for other in CONVOY))
+
+
+def test_five_slower_ones_ahead_are_passed_on_it() -> None:
+    """It keeps clear of all of them, as simulated here, until the last is behind or the way is over."""
+    state, motion, kinds, least_m = begun(), NORTH, set[str](), math.inf
+    for k in range(400):
+        others = tuple(later(one, 0.5 * k) for one in CONVOY)
+        state, choice = manoeuvre(
+            CONFIG, state, sensed(500 * k, motion, others), frozenset(), False
+        )
+        if k == 0:
+            assert (choice.kind, choice.clear) == (KIND, True)
+            assert describe(choice) == "a way in time, past all traffic"
+        if choice.kind != KIND:
+            break
+        motion = flown(motion, choice, 0.5)
+        then = [later(one, 0.5 * (k + 1)).position for one in CONVOY]
+        level = [q for q in then if abs(q.alt_m - motion.position.alt_m) <= VOLUME.zthr_m]
+        least_m = min([least_m, *(math.dist(motion.position[:2], q[:2]) for q in level)])
+        kinds.add(choice.kind)
+    assert k > 40
+    assert least_m > VOLUME.dthr_m
+
+
+def test_it_is_given_up_where_it_is_not_permitted_any_more() -> None:
+    state, _ = manoeuvre(CONFIG, begun(), sensed(0, NORTH, CONVOY), frozenset(), False)
+    assert state.timed is not None
+    left = state.timed.left(500)
+    there = left[len(left) // 2]
+    # one that stands on the way
+    blocks = Intruder(8, there.position, Velocity(0.0, 0.0, 0.0))
+    motion = replace_place(left[0].position)
+    kept, _ = manoeuvre(CONFIG, state, sensed(500, motion, CONVOY), frozenset(), False)
+    assert kept.timed == state.timed
+    lost, _ = manoeuvre(CONFIG, state, sensed(500, motion, (*CONVOY, blocks)), frozenset(), False)
+    assert lost.timed != state.timed
+    # far off it, or taken over anew
+    away = replace_place(Position(0.0, 300.0, 300.0))
+    off, _ = manoeuvre(CONFIG, state, sensed(500, away, CONVOY), frozenset(), False)
+    assert off.timed != state.timed
+    anew = replace(state, held=None)
+    again, _ = manoeuvre(CONFIG, anew, sensed(500, motion, ()), frozenset(), True)
+    assert again.timed is None
+
+
+def replace_place(place: Position) -> Motion:
+    return NORTH._replace(position=place)
