@@ -35,6 +35,7 @@ from cratous.services.following.vehicle_part import Part
 from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
 from cratous.services.pipeline.off_plan import HANDED_BACK, WITH_UXAS
 from cratous.services.pipeline.status import status
+from cratous.services.pipeline.task_state import State
 from cratous.services.pipeline.tasks import (
     ACTIVE,
     CHOSEN,
@@ -43,7 +44,6 @@ from cratous.services.pipeline.tasks import (
     REMOVE,
     UNLISTED,
     WITHDRAWN,
-    State,
     TaskService,
 )
 from cratous.services.planning.options import Dropped, Option
