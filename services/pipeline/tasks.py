@@ -18,6 +18,7 @@ from cratous.services.bus import Envelope
 from cratous.services.pipeline import planner, questions, sensors
 from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
 from cratous.services.pipeline.implementation import implemented, offer, way_asked
+from cratous.services.pipeline.mission_end import MISSION, plan_that_ends
 from cratous.services.pipeline.off_plan import (
     ALONE,
     AUTHORITY,
@@ -86,6 +87,7 @@ class TaskService:
         "uxas.messages.route.RoutePlanResponse",
         "uxas.messages.task.UniqueAutomationResponse",
         "afrl.cmasi.AutomationResponse",
+        MISSION,
         "afrl.cmasi.ServiceStatus",
         "afrl.cmasi.EntityState",
         REMOVE,
@@ -130,6 +132,9 @@ class TaskService:
 
     def handle(self, state: State, envelope: Envelope, now_ms: int) -> tuple[State, Iterable[Any]]:
         body, topic = envelope.body, envelope.topic
+        if topic == MISSION:
+            ends = plan_that_ends(envelope)
+            return (state, ()) if ends is None else self.handle(state, ends, now_ms)
         if topic == UNIQUE:
             return self._requested(state, body)
         if topic in _EVENTS:

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
 from cratous.services.following.task_parameters import within
+from cratous.services.pipeline.mission_end import MISSION
 from cratous.services.pipeline.off_plan import (
     ALONE,
     AUTHORITY,
@@ -84,7 +85,7 @@ class OwnTask:
 
     label = ""
     subscribes: tuple[str, ...] = (
-        TASK, CONFIGURATION, STATE, REMOVE, UNIQUE, CHOICE, ROUTES, PLANS, AUTHORITY, ALONE,
+        TASK, CONFIGURATION, STATE, REMOVE, UNIQUE, CHOICE, ROUTES, PLANS, MISSION, AUTHORITY, ALONE,
     )  # fmt: skip
 
     def __init__(self, name: str, values: Mapping[str, Any]) -> None:
@@ -123,7 +124,9 @@ class OwnTask:
         if topic == ROUTES and body.ResponseID in state.asked:
             return self._implemented(state, body)
         if topic == PLANS:
-            return self._planned(state, body), ()
+            return self._planned(state, body)
+        if topic == MISSION:
+            return (state, ()) if body.WaypointList else self._over(state, body.VehicleID)
         if topic == REMOVE:
             gone = {*body.TaskList}
             left = {number: task for number, task in state.tasks.items() if number not in gone}
@@ -205,8 +208,20 @@ class OwnTask:
         except Exception as error:
             return state, [_failed(request, asked.TaskID, error)]
 
-    def _planned(self, state: Held, response: Any) -> Held:
-        """The state with the place of each task in the vehicles' new plans."""
+    def _over(self, state: Held, vehicle: int) -> Step:
+        """The mission of a vehicle is over: its tasks end undone."""
+        passing = {n: at for n, at in state.passing.items() if at[0] != vehicle}
+        undone = [number for number, by in state.active.items() if by == vehicle]
+        active = {number: by for number, by in state.active.items() if by != vehicle}
+        return state._replace(active=active, passing=passing), [_undone(n) for n in undone]
+
+    def _planned(self, state: Held, response: Any) -> Step:
+        """The place of each task in the vehicles' new plans; a mission that ends ends its tasks undone."""
+        out = list[Any]()
+        for command in response.MissionCommandList:
+            if not command.WaypointList:
+                state, more = self._over(state, command.VehicleID)
+                out += more
         vehicles = {command.VehicleID for command in response.MissionCommandList}
         passing = {n: at for n, at in state.passing.items() if at[0] not in vehicles}
         for command in response.MissionCommandList:
@@ -215,7 +230,7 @@ class OwnTask:
                 found = passing_of(command, number, state.commands.get(vehicle))
                 if found is not None:
                     passing[number] = (vehicle, found)
-        return state._replace(passing=passing)
+        return state._replace(passing=passing), out
 
     def _flown(self, state: Held, body: Any) -> Step:
         """Active from the first vehicle state that lists a task, complete with the first that no
@@ -304,3 +319,8 @@ def _plan(asked: Any, flight: Flight, response: Any) -> Any:
 def _failed(request: int, task: int, error: Exception) -> Any:
     text = f"task {task}: {type(error).__name__}: {error}"
     return status(request, "Error", [("TaskID", str(task)), ("reason", text)])
+
+
+def _undone(task: int) -> Any:
+    text = f"task {task} ends undone: its vehicle's mission has ended"
+    return status(0, "Warning", [("TaskID", str(task)), ("reason", text)])

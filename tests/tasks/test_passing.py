@@ -150,3 +150,36 @@ def test_of_points_nearer_than_a_vehicle_flies_between_states_each_is_complete(
     assert sorted(told) == sorted((kind, task) for task in (5, 6, 7, 8) for kind in LIFE)
     for task in (5, 6, 7, 8):
         assert told.index(("TaskActive", task)) < told.index(("TaskComplete", task))
+
+
+@pytest.mark.shows("Task services", "MissionCommand")
+@pytest.mark.parametrize("kind", ["MissionCommand", "AutomationResponse"])
+def test_a_task_ends_undone_with_the_mission_of_its_vehicle(tmp_path: Path, kind: str) -> None:
+    rig, state, mine, _ = planned(tmp_path, 77)
+    rig.tell(state.copy(CurrentWaypoint=mine[0], AssociatedTasks=[5]))
+    rig.tell(lmcp.new("MissionCommand", VehicleID=2))
+    assert not rig.reasons("Warning"), "of another vehicle"
+    over = lmcp.new("MissionCommand", VehicleID=1)
+    if kind == "AutomationResponse":
+        over = lmcp.new("AutomationResponse", MissionCommandList=[over])
+    rig.tell(over, state.copy(Mode="Loiter"))
+    ended = [text for text in rig.reasons("Warning") if "ends undone" in text]
+    assert [text[:6] for text in ended] == ["task 5", "task 6"]
+    assert not rig.got("TaskComplete")
+
+
+def test_a_task_of_a_users_own_kind_ends_undone_too() -> None:
+    ring = Ring("ring", {})
+    state = ring.start()
+    listed = vehicle(1)[1].copy(AssociatedTasks=[7])
+    over = lmcp.new("MissionCommand", VehicleID=1)
+    said = list[Any]()
+    for body in (
+        lmcp.new("Task", TaskID=7, Label="ring"),
+        listed,
+        over,
+        listed.copy(AssociatedTasks=[]),
+    ):
+        state, out = ring.handle(state, Envelope(0, 0, "test", body.all_names[0], body), 0)
+        said += [type(one).__name__ for one in out]
+    assert said == ["TaskInitialized", "TaskActive", "ServiceStatus"]
