@@ -30,7 +30,7 @@ CHASED = ("WatchTask", "MultiVehicleWatchTask", "BlockadeTask")
 """The kinds of tasks for which a chase is offered."""
 FASTER = 1.05
 """Least ratio of a vehicle's greatest speed to its usual one for which a chase is offered."""
-LEAD_S = 5.0
+LEAD_S = 3.0
 """A chase begins this far ahead of its vehicle [s]: a state of the vehicle arrives before it is there."""
 SETTLED_S = 0.5
 """A chase takes as long as until its circle is where it ends, to within this [s]; a way that jumps may not."""
