@@ -237,7 +237,9 @@ class OwnTask:
         longer does; states from a takeover by ICAROUS until waypoints are flown again end no task.
         """
         command = getattr(body, "CurrentCommand", 0)
-        state = state._replace(commands={**state.commands, body.ID: command})
+        if body.ID in state.speeds and state.commands.get(body.ID) != command:
+            commands = _newest({**state.commands, body.ID: command})
+            state = state._replace(commands=commands)
         if state.away.get(body.ID) == HANDED_BACK and on_its_way(body):
             left = {number: at for number, at in state.away.items() if number != body.ID}
             state = state._replace(away=left)

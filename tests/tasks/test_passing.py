@@ -124,6 +124,15 @@ def test_a_task_of_a_users_own_kind_that_no_state_lists_is_active_and_complete_t
     assert not hear(beyond)
 
 
+def test_entities_that_nobody_configured_take_no_memory_of_a_users_own_kind() -> None:
+    ring = Ring("ring", {})
+    state = ring.start()
+    for number in range(1, 400):
+        for body in vehicle(number)[number % 2 :]:
+            state, _ = ring.handle(state, Envelope(0, 0, "test", body.all_names[0], body), 0)
+    assert set(state.commands) == set(range(2, 400, 2))
+
+
 def test_of_points_nearer_than_a_vehicle_flies_between_states_each_is_complete(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
