@@ -68,39 +68,58 @@ def swath(corners: Sequence[Corner], heading_rad: float, least_m: float) -> Swat
     """
     c, s = math.cos(heading_rad), math.sin(heading_rad)
     own = [(n * c + e * s, e * c - n * s) for n, e in corners]
+    row = _rows(own)
     low, high = min(p[1] for p in own), max(p[1] for p in own)
-    middle = max((low + (high - low) * k / SLICES for k in range(1, SLICES)), key=_length(own))
-    if _length(own)(middle) < least_m:
+    slices = [low + (high - low) * k / SLICES for k in range(1, SLICES)]
+    middle = max(slices, key=lambda y: _length(row(y)))
+    if _length(row(middle)) < least_m:
         return None
     # a convex footprint is long enough between two positions, found by bisection to a millimetre
-    left, right = (_edge_of(own, middle, end, least_m) for end in (low, high))
-    rows = [_row(own, left + (right - left) * k / SLICES) for k in range(SLICES + 1)]
-    return Swath(left, right, max(row[0] for row in rows), min(row[1] for row in rows))
+    left, right = (_edge_of(row, middle, end, least_m) for end in (low, high))
+    rows = [row(left + (right - left) * k / SLICES) for k in range(SLICES + 1)]
+    return Swath(left, right, max(r[0] for r in rows), min(r[1] for r in rows))
 
 
-def _row(own: Sequence[Corner], y: float) -> tuple[float, float]:
-    """The range (ahead) of a convex polygon (ahead, right) at offset y to the right of the centre."""
-    along = []
-    for (x1, y1), (x2, y2) in zip(own, (*own[1:], own[0]), strict=True):
-        if min(y1, y2) <= y <= max(y1, y2):
-            t = (y - y1) / (y2 - y1) if y1 != y2 else 0.0
-            along += [x1 + t * (x2 - x1), x2 if y1 == y2 else x1 + t * (x2 - x1)]
-    return (min(along), max(along)) if along else (0.0, 0.0)
+Row = tuple[float, float]
+RowAt = Callable[[float], Row]
 
 
-def _length(own: Sequence[Corner]) -> Callable[[float], float]:
-    def length(y: float) -> float:
-        low, high = _row(own, y)
-        return high - low
+def _rows(own: Sequence[Corner]) -> RowAt:
+    """The range (ahead) of a convex polygon (ahead, right), by the offset to the right of the centre; (0, 0) beside
+    it.
+    """
+    edges = [
+        (min(y1, y2), max(y1, y2), x1, y1, x2 - x1, y2 - y1, x2)
+        for (x1, y1), (x2, y2) in zip(own, (*own[1:], own[0]), strict=True)
+    ]
 
-    return length
+    def row(y: float) -> Row:
+        low, high = math.inf, -math.inf
+        for least, most, x, begin, ahead, aside, last in edges:
+            if not least <= y <= most:
+                continue
+            if aside:
+                x = last = x + (y - begin) / aside * ahead
+            if x > last:
+                x, last = last, x
+            if x < low:
+                low = x
+            if last > high:
+                high = last
+        return (low, high) if low <= high else (0.0, 0.0)
+
+    return row
 
 
-def _edge_of(own: Sequence[Corner], inner: float, outer: float, least_m: float) -> float:
+def _length(row: Row) -> float:
+    return row[1] - row[0]
+
+
+def _edge_of(row: RowAt, inner: float, outer: float, least_m: float) -> float:
     """The position nearest to `outer` at which the polygon is at least least_m long, as it is at `inner`."""
     while abs(outer - inner) > 1e-3:
         between = (inner + outer) / 2
-        if _length(own)(between) >= least_m:
+        if _length(row(between)) >= least_m:
             inner = between
         else:
             outer = between

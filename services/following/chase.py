@@ -10,11 +10,12 @@ from dataclasses import replace
 
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.kernel import Vec2
-from cratous.core.routing.dubins import cut, dubins, polyline_length_m, pose_after
+from cratous.core.routing.dubins import cut, cut_length_m, dubins, pose_after
 from cratous.core.routing.loiter_discs import broken_by
 from cratous.core.tasks.stations import in_ring, outruns
+from cratous.services.following.meeting import Look, first_met
 from cratous.services.following.motion import Motion
-from cratous.services.following.stations import station
+from cratous.services.following.stations import Station, station
 from cratous.services.following.task_parameters import Asked
 from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
 from cratous.services.pipeline.contexts import Context
@@ -29,10 +30,10 @@ CHASED = ("WatchTask", "MultiVehicleWatchTask", "BlockadeTask")
 """The kinds of tasks for which a chase is offered."""
 FASTER = 1.05
 """Least ratio of a vehicle's greatest speed to its usual one for which a chase is offered."""
-LEAD_S = 5.0
+LEAD_S = 3.0
 """A chase begins this far ahead of its vehicle [s]: a state of the vehicle arrives before it is there."""
-ROUNDS, SETTLED_S = 40, 0.5
-"""Rounds in which the time of arrival has to settle to within this [s]."""
+SETTLED_S = 0.5
+"""A chase takes as long as until its circle is where it ends, to within this [s]; a way that jumps may not."""
 
 
 def is_chase(option: Option) -> bool:
@@ -75,19 +76,30 @@ def chase(
     gate = pose_after(begin, 0, LEAD_S * flyer.speed_m_s, 1.0)
     wide_m, slow_m = flyer.radius_m * (fast / flyer.speed_m_s) ** 2, slows_down_m(usual, vehicle)
     zones, terrain_m = context.inputs.zones, context.inputs.mission.frame.terrain_m
-    seconds = 0.0
-    for _ in range(ROUNDS):
+    here = Vec2(*gate[:2])
+
+    def circle(seconds: float) -> tuple[Station, Pose]:
+        """The circle so long after the chase begins [s], and where its rim is reached, heading for the centre."""
         there = motion._replace(at=motion.after(LEAD_S + seconds))
         goal = station(asked, slot_of(usual), flyer, there, terrain_m)
-        if in_ring(goal.at, Vec2(*gate[:2]), 0, goal.radius_m + 2 * wide_m):
-            return None
-        heading = math.atan2(goal.at.y - gate.east_m, goal.at.x - gate.north_m)
-        rim = pose_after(Pose(*goal.at, flyer.alt_m, heading), 0, -goal.radius_m, 1.0)
-        path = tuple(cut(dubins(gate, rim, wide_m), rim))
-        last_m = min(polyline_length_m(path), slow_m)
-        fast_m = polyline_length_m(path) - last_m
-        before, seconds = seconds, fast_m / fast + last_m / flyer.speed_m_s
-    if abs(seconds - before) > SETTLED_S:
+        heading = math.atan2(goal.at.y - here.y, goal.at.x - here.x)
+        middle = Pose(*goal.at, flyer.alt_m, heading)
+        return goal, pose_after(middle, 0, -goal.radius_m, 1.0)
+
+    def look(seconds: float) -> Look:
+        way_m = cut_length_m(dubins(gate, circle(seconds)[1], wide_m))
+        last_m = min(way_m, slow_m)
+        left_s = (way_m - last_m) / fast + last_m / flyer.speed_m_s - seconds
+        return Look(left_s > 0, left_s)
+
+    if _near(here, circle(0.0)[0], wide_m):
+        return None
+    seconds = first_met(look, look(0.0).by)
+    if seconds is None or abs(look(seconds).by) > SETTLED_S:
+        return None
+    goal, rim = circle(seconds)
+    path = tuple(cut(dubins(gate, rim, wide_m), rim))
+    if _near(here, goal, wide_m):
         return None
     if broken_by(Position(*goal.at, flyer.alt_m), goal.radius_m, zones) is not None:
         return None
@@ -98,3 +110,8 @@ def chase(
         usual, start=gate, end=rim, path=path, duration_ms=lasts, label=usual.label + CHASE,
         holds=hold_rooms(gate, flyer.radius_m, zones),
     )  # fmt: skip
+
+
+def _near(here: Vec2, goal: Station, wide_m: float) -> bool:
+    """Whether a circle is so near that there is no room to turn to it, and to chase."""
+    return in_ring(goal.at, here, 0, goal.radius_m + 2 * wide_m)

@@ -40,11 +40,11 @@ from cratous.services.following.vehicle_part import Part, command_id
 from cratous.services.pipeline.contexts import Context, Contexts
 from cratous.services.pipeline.ground import ROADS
 from cratous.services.pipeline.implementation import ROUNDED_MS
+from cratous.services.pipeline.task_state import State
 from cratous.services.pipeline.tasks import (
     ACTIVE,
     LISTED,
     ROUTES_KNOWN,
-    State,
 )
 from cratous.services.planning.options import Dropped, Option
 from cratous.services.planning.performance_classes import MOMENT_MS

@@ -64,13 +64,13 @@ from cratous.services.following.vehicle_part import Part
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.off_plan import HANDED_BACK, WITH_UXAS
 from cratous.services.pipeline.status import status
+from cratous.services.pipeline.task_state import State
 from cratous.services.pipeline.tasks import (
     ACTIVE,
     LISTED,
     PUBLISH_OPTIONS,
     UNLISTED,
     WITHDRAWN,
-    State,
 )
 from cratous.services.planning.options import Dropped, Option
 from cratous.spec.errors import BadInput

@@ -33,8 +33,10 @@ from cratous.services.following.task_parameters import (
 )
 from cratous.services.following.vehicle_part import Part
 from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
+from cratous.services.pipeline.mission_end import MISSION, plan_that_ends
 from cratous.services.pipeline.off_plan import HANDED_BACK, WITH_UXAS
 from cratous.services.pipeline.status import status
+from cratous.services.pipeline.task_state import State
 from cratous.services.pipeline.tasks import (
     ACTIVE,
     CHOSEN,
@@ -43,7 +45,6 @@ from cratous.services.pipeline.tasks import (
     REMOVE,
     UNLISTED,
     WITHDRAWN,
-    State,
     TaskService,
 )
 from cratous.services.planning.options import Dropped, Option
@@ -195,6 +196,9 @@ class FollowingTaskService(TaskService):
 
     def handle(self, state: Any, envelope: Envelope, now_ms: int) -> tuple[Any, Iterable[Any]]:
         body, topic = envelope.body, envelope.topic
+        if topic == MISSION:
+            ends = plan_that_ends(envelope)
+            return (state, ()) if ends is None else self.handle(state, ends, now_ms)
         if topic == UNIQUE:
             return self._asked_for(state, envelope, now_ms)
         if state.still:

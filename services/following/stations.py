@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from cratous.core.kernel import Vec2
 from cratous.core.tasks.rendezvous import pace
 from cratous.core.tasks.stations import beside, in_ring
+from cratous.services.following.meeting import Look, first_met, narrowed
 from cratous.services.following.motion import Motion
 from cratous.services.following.task_parameters import Asked, Tower
 from cratous.services.loading.coordinates import Places
@@ -25,9 +26,6 @@ from cratous.spec.mission import Camera
 RING_M = 150.0
 """Least distance between the circles of two vehicles of a task [m]."""
 
-DOUBLINGS = 16
-"""A station is unreachable if this many doublings of the travel time do not suffice."""
-HALVINGS = 40
 FLY, EARLY, LATE = 0, 1, 2
 """Results of `pace`."""
 
@@ -88,22 +86,13 @@ def reached_from(
         there = motion._replace(at=motion.after(seconds))
         return there, _way_m(asked, start, there, _circle(asked, slot, radius, there))
 
-    def late(seconds: float) -> bool:
+    def look(seconds: float) -> Look:
         left_m = at_time(seconds)[1]
         said = pace(left_m, seconds, flyer.speed_m_s, flyer.speed_m_s, 0.0)
-        return bool(said.act == LATE)
+        return Look(bool(said.act == LATE), left_m - flyer.speed_m_s * seconds)
 
-    early_s, late_s = 0.0, at_time(0.0)[1] / flyer.speed_m_s
-    for _ in range(DOUBLINGS):
-        if not late(late_s):
-            break
-        early_s, late_s = late_s, 2 * late_s + 1.0
-    else:
-        return None
-    for _ in range(HALVINGS):
-        middle_s = (early_s + late_s) / 2
-        early_s, late_s = (middle_s, late_s) if late(middle_s) else (early_s, middle_s)
-    return at_time(late_s)
+    found_s = first_met(look, at_time(0.0)[1] / flyer.speed_m_s)
+    return None if found_s is None else at_time(found_s)
 
 
 def _way_m(asked: Asked, start: Vec2, there: Motion, goal: Station) -> float:
@@ -111,15 +100,18 @@ def _way_m(asked: Asked, start: Vec2, there: Motion, goal: Station) -> float:
     far_m = max(math.dist(start, goal.at) - goal.radius_m, 0.0)
     if asked.tower is None:
         return far_m
-    near_m, spare_m = 0.0, goal.radius_m
-    for _ in range(HALVINGS):
-        middle_m = (near_m + far_m) / 2
-        here = towards(start, goal.at, middle_m)
-        if relays(asked.tower, there, here, spare_m):
-            far_m = middle_m
-        else:
-            near_m = middle_m
-    return far_m
+    tower, other = asked.tower, _supported(asked.tower, there)
+    reach_m = tower.range_m - goal.radius_m
+
+    def look(from_m: float) -> Look:
+        here = towards(start, goal.at, from_m)
+        apart_m = max(math.dist(tower.at, here), math.dist(other, here))
+        return Look(not relays(tower, there, here, goal.radius_m), apart_m - reach_m)
+
+    begin, end = look(0.0), look(far_m)
+    if end.short or not begin.short:
+        return far_m if end.short else 0.0
+    return narrowed(look, (0.0, begin), (far_m, end))
 
 
 def towards(start: Vec2, goal: Vec2, far_m: float) -> Vec2:
@@ -173,8 +165,13 @@ def relays(tower: Tower, middle: Motion, here: Vec2, spare_m: float = 0.0) -> bo
     middle: motion of the midpoint between the two.
     """
     reach_m = max(tower.range_m - spare_m, 0.0)
-    supported = Vec2(2 * middle.at.x - tower.at.x, 2 * middle.at.y - tower.at.y)
+    supported = _supported(tower, middle)
     return in_ring(tower.at, here, 0, reach_m) and in_ring(supported, here, 0, reach_m)
+
+
+def _supported(tower: Tower, middle: Motion) -> Vec2:
+    """The place of what is supported, from that of the midpoint between it and the tower."""
+    return Vec2(2 * middle.at.x - tower.at.x, 2 * middle.at.y - tower.at.y)
 
 
 def _seen(state: Any, camera: Camera, at: Vec2, places: Places) -> bool:

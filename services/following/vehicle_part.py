@@ -17,7 +17,7 @@ from cratous.services.following.stations import Station, at_station, camera_of, 
 from cratous.services.following.task_parameters import Asked
 from cratous.services.loading.coordinates import Places
 from cratous.services.pipeline.contexts import Context
-from cratous.services.pipeline.tasks import State
+from cratous.services.pipeline.task_state import State
 from cratous.services.planning.options import Option
 from cratous.spec.mission import Position
 from cratous.spec.mission.plan import Pose

@@ -18,6 +18,7 @@ from cratous.services.loading.assignment_attributes import Settings, plans_live,
 from cratous.services.loading.conditions import kept
 from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import item_key
+from cratous.services.loading.duplicates import counted_once
 from cratous.services.loading.ground import CONFIGURATION, STATE, vehicle_of
 from cratous.services.loading.polygons import one_region
 from cratous.services.loading.request_kinds import WRAPPED, is_request
@@ -229,7 +230,10 @@ class _Cast:
                 expected="an AutomationRequest among the messages",
                 got="none",
             )
-        return self.requests[0]
+        sent = self.requests[0]
+        body, said = counted_once(sent.body)
+        self.notes += said
+        return replace(sent, body=body) if said else sent
 
     def keep_conditions(self, request: Sent) -> None:
         """Apply the request's speeds and altitudes; BadInput if they are infeasible."""

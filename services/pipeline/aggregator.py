@@ -22,6 +22,7 @@ from cratous.core.contracts.checklists import (
     owns,
 )
 from cratous.services.bus import Envelope, Send
+from cratous.services.loading.duplicates import counted_once
 from cratous.services.pipeline.compositions import composition, is_choice
 from cratous.services.pipeline.contexts import UNIQUE, Contexts
 from cratous.services.pipeline.ground import is_ground
@@ -109,7 +110,8 @@ class RouteAggregatorService:
         if topic == UNIQUE:
             if self._contexts.refused(body.RequestID):
                 return state, self._contexts.refusal(body.RequestID)
-            return self._collect(state, Collecting(AWAITS_OPTIONS, body, {}))
+            once = body.copy(OriginalRequest=counted_once(body.OriginalRequest)[0])
+            return self._collect(state, Collecting(AWAITS_OPTIONS, once, {}))
         if topic == OPTIONS:
             mine = state.collecting.get(body.CorrespondingAutomationRequestID)
             if mine is None or body.TaskID not in mine.request.OriginalRequest.TaskList:

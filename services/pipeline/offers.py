@@ -13,6 +13,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from cratous.core.assignment.problem import START, Branch
+from cratous.services.loading.duplicates import counted_once
 from cratous.services.pipeline.compositions import Pair, Split, composition, is_choice, split
 from cratous.services.pipeline.contexts import Context
 from cratous.services.planning.inputs import Inputs
@@ -96,7 +97,7 @@ class Read(NamedTuple):
 
 def read(told: Told, matrix: Any, context: Context) -> Read:
     """The options and routes of a request; BadInput for what is missing or invalid."""
-    request = told.request.OriginalRequest
+    request, _ = counted_once(told.request.OriginalRequest)
     # tasks that the relations do not name are not done
     tasks = tuple(task for task in request.TaskList if task in context.inputs.wanted)
     unnamed = set(request.TaskList) - set(tasks)

@@ -10,15 +10,15 @@ TaskImplementationResponse; vehicle states -> TaskActive, TaskComplete, and came
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.core.contracts.tasks import Task as Kernel
 from cratous.core.contracts.tasks import task_step
 from cratous.services.bus import Envelope
 from cratous.services.pipeline import planner, questions, sensors
 from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
 from cratous.services.pipeline.implementation import implemented, offer, way_asked
+from cratous.services.pipeline.mission_end import MISSION, plan_that_ends
 from cratous.services.pipeline.off_plan import (
     ALONE,
     AUTHORITY,
@@ -27,10 +27,12 @@ from cratous.services.pipeline.off_plan import (
     away_after,
     on_its_way,
 )
+from cratous.services.pipeline.passing import passing_of
 from cratous.services.pipeline.questions import Asked
 from cratous.services.pipeline.request_end import request_ended
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.steering import Steering, last_look, look_command, steering_of
+from cratous.services.pipeline.task_state import State
 from cratous.services.planning.options import Option
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.mission import Task, TaskKind
@@ -63,50 +65,12 @@ INITIALISED, REQUESTED, SENSORS_KNOWN, ROUTES_KNOWN, CHOSEN, FINAL_KNOWN = 1, 2,
 LISTED, UNLISTED, ENDED, WITHDRAWN, PROCEED = 7, 8, 9, 10, 11
 ANNOUNCE, ASK_SENSORS, ASK_ROUTES, PUBLISH_OPTIONS = 1, 2, 3, 4
 ASK_FINAL, PUBLISH_PLAN, STEER, COMPLETE, STALE = 5, 6, 7, 8, 9
-ACTIVE = 7
+SELECTED, ACTIVE = 6, 7
 _EVENTS = {
     questions.SENSORS: SENSORS_KNOWN,
     "uxas.messages.task.TaskImplementationRequest": CHOSEN,
     "uxas.messages.route.RoutePlanResponse": FINAL_KNOWN,
 }
-
-
-class State(NamedTuple):
-    """The kernel's state; the implementation request in progress; the assigned vehicle, and its camera
-    steering (None: none).
-
-    The kernel identifies requests by increasing tickets, since RequestIDs need not increase; tickets: the
-    newest ones with their RequestIDs. asked: other services' answers about the options. away: whether ICAROUS
-    has the vehicle, it circles without the link, or either is just over: the tasks in its states then do not
-    refer to the plan.
-    """
-
-    task: Kernel = Kernel(0, 0, 0)
-    chosen: Any = None
-    vehicle: int = 0
-    steering: Steering | None = None
-    tickets: tuple[tuple[int, int], ...] = ((0, 0),)
-    asked: Asked = Asked()
-    away: int = WITH_UXAS
-
-    def number(self, ticket: int) -> int:
-        """The RequestID of a ticket."""
-        return dict(self.tickets)[ticket]
-
-    def ticket(self, number: int) -> int:
-        """The ticket of the request in progress, or of the next one, that has this RequestID; -1 for neither."""
-        mine = (self.task.request, self.task.kept)
-        return next((t for t, n in self.tickets if n == number and t in mine), -1)
-
-    def arrived(self, number: int) -> tuple[State, int]:
-        """The state with a ticket for a request, and that ticket."""
-        ticket = self.ticket(number)
-        if ticket >= 0:
-            return self, ticket
-        ticket = self.tickets[-1][0] + 1
-        mine = (self.task.request, self.task.kept)
-        kept = tuple(pair for pair in self.tickets if pair[0] in mine)
-        return self._replace(tickets=(*kept, (ticket, number))), ticket
 
 
 def nothing() -> None:
@@ -123,6 +87,7 @@ class TaskService:
         "uxas.messages.route.RoutePlanResponse",
         "uxas.messages.task.UniqueAutomationResponse",
         "afrl.cmasi.AutomationResponse",
+        MISSION,
         "afrl.cmasi.ServiceStatus",
         "afrl.cmasi.EntityState",
         REMOVE,
@@ -167,6 +132,9 @@ class TaskService:
 
     def handle(self, state: State, envelope: Envelope, now_ms: int) -> tuple[State, Iterable[Any]]:
         body, topic = envelope.body, envelope.topic
+        if topic == MISSION:
+            ends = plan_that_ends(envelope)
+            return (state, ()) if ends is None else self.handle(state, ends, now_ms)
         if topic == UNIQUE:
             return self._requested(state, body)
         if topic in _EVENTS:
@@ -177,8 +145,9 @@ class TaskService:
             ended = request_ended(topic, body)
             return self._advance(state, ENDED, state.ticket(ended), body) if ended else (state, ())
         if topic in ("afrl.cmasi.AutomationResponse", REMOVE):
-            gone = self._withdrawn(state, body)
-            return self._advance(state, WITHDRAWN, 0, body) if gone else (state, ())
+            if self._withdrawn(state, body):
+                return self._advance(state, WITHDRAWN, 0, body)
+            return (state, ()) if topic == REMOVE else (self._noted(state, body), ())
         if topic in (AUTHORITY, ALONE):
             if body.VehicleID == state.vehicle:
                 state = state._replace(away=away_after(state.away, topic, body))
@@ -204,13 +173,31 @@ class TaskService:
         if state.vehicle != body.ID:
             return state, ()
         event = LISTED if self._task_id in body.AssociatedTasks else UNLISTED
-        steering = state.steering
-        state, out = self._advance(state, event, 0, body)
+        steering, out = state.steering, list[Any]()
+        if event == UNLISTED and state.task.state == SELECTED and state.passing is not None:
+            passing, passed = state.passing.after(body)
+            state = state._replace(passing=passing)
+            if passed:  # it began and ended since the state before this one
+                state, began = self._advance(state, LISTED, 0, body)
+                out += began
+        state, more = self._advance(state, event, 0, body)
+        out += more
         if steering is not None and state.steering is None:
             return state, [*out, last_look(steering, body.ID)]
         if steering is not None and state.task.state == ACTIVE:
             return state, [*out, look_command(steering, body)]
         return state, out
+
+    def _noted(self, state: State, response: Any) -> State:
+        """The state with the place of the task in a plan that is sent to its vehicle."""
+        if self._contexts.source.outside is None or state.task.state != SELECTED:
+            return state
+        for command in response.MissionCommandList:
+            if command.VehicleID == state.vehicle:
+                newest = self._contexts.world.get("state", state.vehicle)
+                before = getattr(newest, "CurrentCommand", None)
+                return state._replace(passing=passing_of(command, self._task_id, before))
+        return state
 
     def _withdrawn(self, state: State, body: Any) -> bool:
         """Whether the task is removed, or missing from a new plan for its vehicle."""
@@ -273,7 +260,7 @@ class TaskService:
             return state, PROCEED
         if act == ASK_SENSORS:
             clear = state._replace(
-                chosen=None, vehicle=0, steering=None, asked=Asked(), away=WITH_UXAS
+                chosen=None, vehicle=0, steering=None, passing=None, asked=Asked(), away=WITH_UXAS
             )
             return self._ask_sensors(clear, out)
         if act == ASK_ROUTES:
@@ -301,7 +288,9 @@ class TaskService:
             )
         elif act == COMPLETE:
             out.append(self._ended(state, body))
-            return state._replace(chosen=None, vehicle=0, steering=None, away=WITH_UXAS), PROCEED
+            return state._replace(
+                chosen=None, vehicle=0, steering=None, passing=None, away=WITH_UXAS
+            ), PROCEED
         return state, 0
 
     def _ask_sensors(self, state: State, out: list[Any]) -> tuple[State, int]:

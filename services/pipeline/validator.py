@@ -9,7 +9,7 @@ over.
 A TaskAutomationRequest keeps its RequestID unless that was used recently; all others are numbered in order of
 arrival. A validator restarted in the same process continues the queue of the previous one.
 
-A request is published as received. Its tasks, vehicles and relations are interpreted by the planning
+A request is published as received, but for ids that it lists several times (`counted_once`). Its tasks, vehicles and relations are interpreted by the planning
 services, so that a client's request reaches planners of any kind; if it can be interpreted here, tasks that
 the relations omit are removed, and planning states are added.
 """
@@ -23,6 +23,7 @@ from cratous.bridge import lmcp
 from cratous.core.contracts import requests
 from cratous.core.contracts.requests import Line, line_step
 from cratous.services.bus import Envelope, Wake
+from cratous.services.loading.duplicates import counted_once
 from cratous.services.pipeline.answers import Asked, answer, asked_of, refusal
 from cratous.services.pipeline.contexts import Context, Contexts
 from cratous.services.pipeline.external_tasks import Unserved
@@ -250,10 +251,11 @@ class AutomationRequestValidatorService:
             return state
         if not found.valid:
             return self._refuse(state, found.reasons, out, now_ms)
+        request, twice = counted_once(asked.request)
         unique = lmcp.new(
             "UniqueAutomationRequest",
             RequestID=number,
-            OriginalRequest=asked.request,
+            OriginalRequest=request,
             SandBoxRequest=asked.sandbox,
             PlanningStates=asked.states,
         )
@@ -266,13 +268,13 @@ class AutomationRequestValidatorService:
             out.append(unique)
             return state._replace(published=True, notes=())
         out.append(self._complete(unique, context))
-        left = set(asked.request.TaskList) - set(context.inputs.wanted)
-        notes: tuple[str, ...] = ()
+        left = set(request.TaskList) - set(context.inputs.wanted)
+        notes = twice
         if left:
             names = ", ".join(map(str, sorted(left)))
-            notes = (f"tasks not named in TaskRelationships, so not done: {names}",)
-            out.append(status(number, "Warning", [("reason", notes[0])]))
-        return state._replace(published=True, notes=notes)
+            notes.append(f"tasks not named in TaskRelationships, so not done: {names}")
+        out += [status(number, "Warning", [("reason", note)]) for note in notes]
+        return state._replace(published=True, notes=tuple(notes))
 
     def _complete(self, unique: Any, context: Context) -> Any:
         """The request without tasks that are not to be done, and with each vehicle's planning state."""

@@ -80,10 +80,12 @@ def mission(
     c: Course, body: Any, m: Motion, chassis: Chassis, told: Mapping[int, int] = NOTHING
 ) -> Course:
     """Execute a MissionCommand unchanged from its first waypoint on; without such a waypoint continue as
-    before.
+    before; without any, the mission is over.
 
     told: reported numbers of waypoints.
     """
+    if not body.WaypointList:
+        return c._replace(route={}, route_id=body.CommandID, directed_id=None)
     route: dict[int, Waypoint] = {}
     for w in body.WaypointList:
         route.setdefault(w.Number, waypoint_of(w, told))

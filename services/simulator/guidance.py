@@ -82,9 +82,12 @@ class Guidance(NamedTuple):
 
 
 def mission(g: Guidance, body: Any, told: Mapping[int, int] = NOTHING) -> Guidance:
-    """Fly a MissionCommand from its first waypoint on. told: reported numbers of waypoints."""
+    """Fly a MissionCommand from its first waypoint on. told: reported numbers of waypoints.
+
+    Without waypoints the mission is over: who circles goes on circling, without end; all others keep their course.
+    """
     if not body.WaypointList:
-        return g
+        return g if g.compatible else _over(g, body.CommandID)
     route: dict[int, Waypoint] = {}
     for w in body.WaypointList:
         # of waypoints with the same number the first one counts
@@ -101,6 +104,16 @@ def mission(g: Guidance, body: Any, told: Mapping[int, int] = NOTHING) -> Guidan
     )
     g = advance(g, body.FirstWaypoint)
     return g if g.leg.to is not None else g._replace(mode=DIRECTED)
+
+
+def _over(g: Guidance, number: int) -> Guidance:
+    """Guidance without a route, by a command of this number."""
+    g = g._replace(
+        route=None, route_id=number, directed_id=None, leg=Leg(), loiters=(), at_waypoint=False
+    )
+    if g.mode == LOITER and g.loiter is not None:
+        return g._replace(loiter=g.loiter._replace(duration_s=0.0), loiter_id=number)
+    return g._replace(mode=DIRECTED, loiter=None)
 
 
 def waypoint_of(w: Any, told: Mapping[int, int] = NOTHING) -> Waypoint:

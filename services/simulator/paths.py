@@ -20,6 +20,11 @@ def steers(body: Any) -> bool:
     return type(body).__name__ != "VehicleActionCommand" or bool(kinds & STEERING)
 
 
+def is_over(body: Any) -> bool:
+    """Whether a command ends its vehicle's mission: a MissionCommand without waypoints."""
+    return type(body).__name__ == "MissionCommand" and not body.WaypointList
+
+
 class Path(NamedTuple):
     """A path as a MissionCommand. told: reported numbers of duplicated waypoints, by their numbers in the
     mission.

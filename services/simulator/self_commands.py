@@ -7,6 +7,7 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.services.simulator.aircraft import Aircraft, circle_m
 from cratous.services.simulator.driver import Driver
+from cratous.services.simulator.guidance import LOITER
 from cratous.services.simulator.tracking import Track
 
 
@@ -19,6 +20,11 @@ def stay(key: int, command: int, one: Aircraft | Driver, at: Any) -> Any:
         more = {"Radius": circle_m(one, speed), "Airspeed": speed,
                 "Location": at.copy(Altitude=one.motion.alt_m, AltitudeType="MSL")}  # fmt: skip
     return _command(key, command, lmcp.new("LoiterAction", LoiterType="Hover", **more))
+
+
+def circles(one: Aircraft | Driver) -> bool:
+    """Whether an aircraft circles and has no route to continue on."""
+    return isinstance(one, Aircraft) and one.guidance.route is None and one.guidance.mode == LOITER
 
 
 def fall_back(key: int, track: Track, time_s: float, one: Aircraft | Driver) -> tuple[str, Any]:

@@ -29,10 +29,10 @@ from cratous.services.simulator.driver import STATES, Driver, Drivers
 from cratous.services.simulator.guidance import NOTHING
 from cratous.services.simulator.locations import location_of
 from cratous.services.simulator.motion import Motion
-from cratous.services.simulator.paths import Paths, check_times, path_of, steers
+from cratous.services.simulator.paths import Paths, check_times, is_over, path_of, steers
 from cratous.services.simulator.perception import Body, perceptions
 from cratous.services.simulator.performance import Airframe, airframe_of
-from cratous.services.simulator.self_commands import fall_back, stay
+from cratous.services.simulator.self_commands import circles, fall_back, stay
 from cratous.services.simulator.tracking import Tracks
 from cratous.spec.errors import BadInput
 
@@ -257,11 +257,9 @@ class World:
             airframe = self._airframes.get(body.ID)
             if airframe is None:
                 raise BadInput(
-                    "a state of a vehicle without configuration",
-                    where=where,
-                    item=f"AirVehicleState {body.ID}",
-                    expected="its AirVehicleConfiguration before it",
-                )
+                    "a state of a vehicle without configuration", where=where,
+                    item=f"AirVehicleState {body.ID}", expected="its AirVehicleConfiguration before it",
+                )  # fmt: skip
             body = self._above_sea(body)
             one = aircraft_of(body, airframe, self.aircraft.get(body.ID), where)
             if self.terrain is not None:  # a corrupt tile is refused with its state
@@ -302,10 +300,8 @@ class World:
         flies = type(body).__name__ == "AirVehicleConfiguration"
         if body.ID in (self.drivers if flies else self._airframes):
             raise BadInput(
-                "the same vehicle of two kinds",
-                where=where,
-                item=f"{type(body).__name__} {body.ID}",
-            )
+                "the same vehicle of two kinds", where=where, item=f"{type(body).__name__} {body.ID}"
+            )  # fmt: skip
         if body.ID in (self._airframes if flies else self.drivers):
             return
         if len(self._airframes) + len(self.drivers) >= MOST_VEHICLES:
@@ -324,12 +320,10 @@ class World:
         if body.VehicleID not in self.aircraft and body.VehicleID not in self.drivers.there:
             there = [*self.aircraft, *self.drivers.there]
             raise BadInput(
-                "a command for a vehicle that is not there",
-                where=where,
-                item=f"{type(body).__name__} {body.CommandID}",
+                "a command for a vehicle that is not there", where=where,
+                item=f"{type(body).__name__} {body.CommandID}", got=str(body.VehicleID),
                 expected=f"one of {sorted(there)[:20]}",
-                got=str(body.VehicleID),
-            )
+            )  # fmt: skip
 
     def _above_sea(self, body: Any) -> Any:
         """A message with altitudes above mean sea level; AMASE treats all altitudes as such."""
@@ -351,6 +345,8 @@ class World:
             self._keep_to_times()
         else:
             self._obey(body)
+            if is_over(body) and not self.compatible:
+                self._stay(body.VehicleID, body.CommandID)
 
     def _follows(self, body: Any) -> bool:
         """Whether an object is a path for a vehicle that follows paths: all except aircraft in compatibility
@@ -371,9 +367,14 @@ class World:
                 path = path_of(body, circle)
                 self._obey(path.mission, path.told)
             else:
-                flies = isinstance(one, Aircraft)
-                at = location_of(one.motion) if flies else self.drivers.halt(key)
-                self._obey(stay(key, body.CommandID, one, at))
+                self._stay(key, body.CommandID)
+
+    def _stay(self, key: int, command: int) -> None:
+        """A vehicle stays where it is, unless it circles without a route already."""
+        one = self._one(key)
+        if not circles(one):
+            at = location_of(one.motion) if isinstance(one, Aircraft) else self.drivers.halt(key)
+            self._obey(stay(key, command, one, at))
 
     def _one(self, key: int) -> Aircraft | Driver:
         """A present vehicle."""

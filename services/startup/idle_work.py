@@ -17,6 +17,7 @@ from cratous.core.routing.bulk import direct_many, route_many, route_points
 from cratous.core.routing.dubins_words import legs, legs_length, words
 from cratous.core.tasks.coverage_arrays import grid_squares, mark_seen
 from cratous.core.tasks.footprints import nearest_on_line, points_in_quads
+from cratous.services.loading.polygons import polygon_problem
 from cratous.services.pipeline.contexts import Contexts
 from cratous.services.planning.assign_warm import read
 from cratous.services.startup.sample_missions import TASKS, plan
@@ -31,6 +32,8 @@ _LOOPS: tuple[Callable[..., Any], ...] = (
 _FEW = {"PointSearchTask", "ImpactPointSearchTask", "MustFlyTask", "LoiterTask", "WatchTask"}
 """Kinds of which a single task without zones needs no machine code."""
 _SORTS = ("task", "zone", "region", "configuration", "state", "point", "line", "area")
+_SQUARE = ((0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0))
+"""An area with which the check of polygons is made ready."""
 WITHOUT_TASKS_S = 10.0
 """Without any task for this long, everything is loaded [s]."""
 
@@ -49,10 +52,12 @@ def pieces(contexts: Contexts | None = None) -> Iterator[bool]:
         return
     until_s = time.monotonic() + WITHOUT_TASKS_S
     plan(TASKS[:1], zone="")
+    polygon_problem(_SQUARE)
     yield True
     told = Told(contexts, source)
     while not told.much and (told.any or not is_due(until_s, time.monotonic())):
         yield from told.options()
+    yield from told.makes()  # before any loading, which may take longer than there is time
     for piece in _read():
         yield from told.options(piece)
     while True:
@@ -83,8 +88,13 @@ class Told:
         )
 
     def options(self, done: bool = False) -> Iterator[bool]:
+        """As `makes`; finally yields `done`."""
+        yield from self.makes()
+        yield done
+
+    def makes(self) -> Iterator[bool]:
         """Compute options of the known tasks, one task at a time, and routes between them, if more is known
-        than before; finally yields `done`.
+        than before.
         """
         counts = self._counts()
         inputs = None if counts == self._made else self._source.foreseen()
@@ -95,7 +105,6 @@ class Told:
                 inputs.make_options(task.id)
                 yield True
             yield from (True for _ in inputs.find_ways())
-        yield done
 
 
 def _read() -> Iterator[bool]:

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
 from cratous.services.following.task_parameters import within
+from cratous.services.pipeline.mission_end import MISSION
 from cratous.services.pipeline.off_plan import (
     ALONE,
     AUTHORITY,
@@ -24,6 +25,7 @@ from cratous.services.pipeline.off_plan import (
     away_after,
     on_its_way,
 )
+from cratous.services.pipeline.passing import Passing, passing_of
 from cratous.services.pipeline.status import status
 from cratous.spec.errors import BadInput
 
@@ -32,6 +34,7 @@ STATE, REMOVE = "afrl.cmasi.EntityState", "afrl.cmasi.RemoveTasks"
 UNIQUE = "uxas.messages.task.UniqueAutomationRequest"
 CHOICE = "uxas.messages.task.TaskImplementationRequest"
 ROUTES = "uxas.messages.route.RoutePlanResponse"
+PLANS = "afrl.cmasi.AutomationResponse"
 ROUTES_FROM = 10**15
 """First id of these services' route requests, above those of other tasks."""
 REMEMBERED = 256
@@ -59,7 +62,9 @@ class Flight(NamedTuple):
 class Held(NamedTuple):
     """tasks and nominal speeds [m/s] by id; offers: by request and task, vehicle and flight of each
     option; asked: by route request id; active: vehicles by task; away: vehicles that ICAROUS
-    commands, or has handed back and that do not fly waypoints yet, with which of the two.
+    commands, or has handed back and that do not fly waypoints yet, with which of the two;
+    commands: the one that each vehicle reported last; passing: vehicle and place in its plan of
+    each task that has not begun.
     """
 
     tasks: Mapping[int, Any] = MappingProxyType({})
@@ -68,6 +73,8 @@ class Held(NamedTuple):
     asked: Mapping[int, Any] = MappingProxyType({})
     active: Mapping[int, int] = MappingProxyType({})
     away: Mapping[int, int] = MappingProxyType({})
+    commands: Mapping[int, int] = MappingProxyType({})
+    passing: Mapping[int, tuple[int, Passing]] = MappingProxyType({})
 
 
 Step = tuple[Held, Iterable[Any]]
@@ -78,7 +85,7 @@ class OwnTask:
 
     label = ""
     subscribes: tuple[str, ...] = (
-        TASK, CONFIGURATION, STATE, REMOVE, UNIQUE, CHOICE, ROUTES, AUTHORITY, ALONE,
+        TASK, CONFIGURATION, STATE, REMOVE, UNIQUE, CHOICE, ROUTES, PLANS, MISSION, AUTHORITY, ALONE,
     )  # fmt: skip
 
     def __init__(self, name: str, values: Mapping[str, Any]) -> None:
@@ -116,11 +123,16 @@ class OwnTask:
             return self._way_there(state, body)
         if topic == ROUTES and body.ResponseID in state.asked:
             return self._implemented(state, body)
+        if topic == PLANS:
+            return self._planned(state, body)
+        if topic == MISSION:
+            return (state, ()) if body.WaypointList else self._over(state, body.VehicleID)
         if topic == REMOVE:
             gone = {*body.TaskList}
             left = {number: task for number, task in state.tasks.items() if number not in gone}
             active = {number: of for number, of in state.active.items() if number not in gone}
-            return state._replace(tasks=left, active=active), ()
+            passing = {number: at for number, at in state.passing.items() if number not in gone}
+            return state._replace(tasks=left, active=active, passing=passing), ()
         if topic in (AUTHORITY, ALONE):
             away = away_after(state.away.get(body.VehicleID, WITH_UXAS), topic, body)
             return state._replace(away={**state.away, body.VehicleID: away}), ()
@@ -196,26 +208,62 @@ class OwnTask:
         except Exception as error:
             return state, [_failed(request, asked.TaskID, error)]
 
+    def _over(self, state: Held, vehicle: int) -> Step:
+        """The mission of a vehicle is over: its tasks end undone."""
+        passing = {n: at for n, at in state.passing.items() if at[0] != vehicle}
+        undone = [number for number, by in state.active.items() if by == vehicle]
+        active = {number: by for number, by in state.active.items() if by != vehicle}
+        return state._replace(active=active, passing=passing), [_undone(n) for n in undone]
+
+    def _planned(self, state: Held, response: Any) -> Step:
+        """The place of each task in the vehicles' new plans; a mission that ends ends its tasks undone."""
+        out = list[Any]()
+        for command in response.MissionCommandList:
+            if not command.WaypointList:
+                state, more = self._over(state, command.VehicleID)
+                out += more
+        vehicles = {command.VehicleID for command in response.MissionCommandList}
+        passing = {n: at for n, at in state.passing.items() if at[0] not in vehicles}
+        for command in response.MissionCommandList:
+            vehicle = command.VehicleID
+            for number in state.tasks.keys() - state.active.keys():
+                found = passing_of(command, number, state.commands.get(vehicle))
+                if found is not None:
+                    passing[number] = (vehicle, found)
+        return state._replace(passing=passing), out
+
     def _flown(self, state: Held, body: Any) -> Step:
         """Active from the first vehicle state that lists a task, complete with the first that no
         longer does; states from a takeover by ICAROUS until waypoints are flown again end no task.
         """
+        command = getattr(body, "CurrentCommand", 0)
+        if body.ID in state.speeds and state.commands.get(body.ID) != command:
+            commands = _newest({**state.commands, body.ID: command})
+            state = state._replace(commands=commands)
         if state.away.get(body.ID) == HANDED_BACK and on_its_way(body):
             left = {number: at for number, at in state.away.items() if number != body.ID}
             state = state._replace(away=left)
         if state.away.get(body.ID, WITH_UXAS) != WITH_UXAS:
             return state, ()
-        out, active = list[Any](), dict(state.active)
-        for number in set(body.AssociatedTasks) & state.tasks.keys() - active.keys():
+        out, active, listed = list[Any](), dict(state.active), {*body.AssociatedTasks}
+        passing = dict(state.passing)
+        for number, (vehicle, at) in state.passing.items():
+            if vehicle != body.ID or number in active:
+                continue
+            passing[number] = (vehicle, at.after(body)[0])
+            if number in listed or at.after(body)[1]:
+                del passing[number]
+                listed.add(number)
+        for number in sorted(listed & state.tasks.keys() - active.keys()):
             active[number] = body.ID
             of = {"TaskID": number, "EntityID": body.ID}
             out.append(lmcp.new("TaskActive", TimeTaskActivated=body.Time, **of))
-        for number, vehicle in state.active.items():
+        for number, vehicle in list(active.items()):
             if vehicle == body.ID and number not in body.AssociatedTasks:
                 del active[number]
                 of = {"TaskID": number, "EntitiesInvolved": [vehicle]}
                 out.append(lmcp.new("TaskComplete", TimeTaskCompleted=body.Time, **of))
-        return state._replace(active=active), out
+        return state._replace(active=active, passing=passing), out
 
 
 def _newest(held: dict[Any, Any]) -> dict[Any, Any]:
@@ -273,3 +321,8 @@ def _plan(asked: Any, flight: Flight, response: Any) -> Any:
 def _failed(request: int, task: int, error: Exception) -> Any:
     text = f"task {task}: {type(error).__name__}: {error}"
     return status(request, "Error", [("TaskID", str(task)), ("reason", text)])
+
+
+def _undone(task: int) -> Any:
+    text = f"task {task} ends undone: its vehicle's mission has ended"
+    return status(0, "Warning", [("TaskID", str(task)), ("reason", text)])

@@ -67,7 +67,9 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
         builder.PlanBuilderService,
         ("TaskImplementationRequest", "UniqueAutomationResponse", "ServiceStatus"),
     ),
-    "WaypointPlanManagerService": (waypoints.WaypointPlanManagerService, ("MissionCommand",)),
+    "WaypointPlanManagerService": (
+        waypoints.WaypointPlanManagerService, ("MissionCommand", "VehicleActionCommand"),
+    ),
     "SimpleWaypointPlanManagerService": (
         waypoints.SimpleWaypointPlanManagerService, ("MissionCommand",)
     ),

@@ -120,19 +120,24 @@ def _loitering(waypoint: Any, radius_m: float) -> Any:
 
 
 class Served(NamedTuple):
-    """The path in progress, the segment sent to the vehicle, its current waypoint, and the last command id."""
+    """The path in progress, the segment sent to the vehicle, its current waypoint, the last command id, and the
+    vehicle's newest state (None: not known).
+    """
 
     path: Path | None = None
     span: Span = Span(0, 0)
     waypoint: int = 0
     commands: int = 0
+    newest: Any = None
 
 
 Step = tuple[Served, Iterable[Any]]
 
 
 class WaypointPlanManagerService:
-    """AutomationResponse or MissionCommand -> MissionCommands with a few waypoints each, in sequence."""
+    """AutomationResponse or MissionCommand -> MissionCommands with a few waypoints each, in sequence; without
+    waypoints, no more of them: the vehicle circles where it is, or stands there.
+    """
 
     subscribes: tuple[str, ...] = (RESPONSE, COMMAND, INCREMENT, *STATES)
 
@@ -150,7 +155,9 @@ class WaypointPlanManagerService:
                     return self._begin(state, command)
             return state, ()
         if topic in STATES:
-            return self._flown(state, body) if self._vehicle == body.ID else (state, ())
+            if self._vehicle != body.ID:
+                return state, ()
+            return self._flown(state._replace(newest=body), body)
         if body.VehicleID != self._vehicle:
             return state, ()
         if topic == COMMAND:
@@ -159,11 +166,33 @@ class WaypointPlanManagerService:
 
     def _begin(self, state: Served, command: Any) -> Step:
         if not command.WaypointList:
-            return state, ()
+            return self._end(state, command)
         path = path_of(command, self._serving)
         end = len(path.waypoints) - 1 if self._all(path) else path.end
         span = first_span(end, self._length(path))
-        return self._serve(Served(path, span, 0, state.commands), path.waypoints[0].Number)
+        begun = state._replace(path=path, span=span, waypoint=0)
+        return self._serve(begun, path.waypoints[0].Number)
+
+    def _end(self, state: Served, command: Any) -> Step:
+        """The mission is over: nothing more is served, and the vehicle is told to stay where it is, if that is known."""
+        here, over = state.newest, state._replace(path=None, span=Span(0, 0), waypoint=0)
+        if here is None:
+            return over, ()
+        stay = lmcp.new(
+            "LoiterAction",
+            LoiterType="Circular",
+            Radius=self._serving.radius_m,
+            Duration=-1,
+            Airspeed=getattr(here, "Airspeed", here.Groundspeed) or here.u,
+            Location=here.Location,
+        )
+        told = lmcp.new(
+            "VehicleActionCommand",
+            CommandID=state.commands + 1,
+            VehicleID=self._vehicle,
+            VehicleActionList=[*command.VehicleActionList, stay],
+        )
+        return over._replace(commands=state.commands + 1), [told]
 
     def _length(self, path: Path) -> int:
         """Length of a segment; for a cyclic path at most the number of waypoints in the cycle."""

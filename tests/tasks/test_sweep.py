@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import random
 from typing import Any
 
 import numpy as np
 import pytest
 from task_tools import ELL, FIELD
 
+from cratous.core.tasks import sweep
 from cratous.core.tasks.coverage import (
     area_m2,
     disc,
@@ -145,3 +147,25 @@ def test_a_swath_leaves_out_what_is_in_view_too_shortly() -> None:
 def test_headings_are_those_of_the_edges() -> None:
     assert edge_headings(ELL, math.radians(20)) == pytest.approx([math.pi / 2, 0.0])
     assert len(edge_headings(disc((0.0, 0.0), 100.0), math.radians(20))) <= 9
+
+
+def row_of(own: list[tuple[float, float]], y: float) -> tuple[float, float]:
+    """The range ahead of a convex polygon at an offset to the right, edge by edge."""
+    along = []
+    for (x1, y1), (x2, y2) in zip(own, (*own[1:], own[0]), strict=True):
+        if min(y1, y2) <= y <= max(y1, y2):
+            t = (y - y1) / (y2 - y1) if y1 != y2 else 0.0
+            along += [x1 + t * (x2 - x1), x2 if y1 == y2 else x1 + t * (x2 - x1)]
+    return (min(along), max(along)) if along else (0.0, 0.0)
+
+
+def test_rows_of_a_footprint_are_those_found_edge_by_edge_to_the_last_bit() -> None:
+    chance = random.Random(5)
+    square = [(-50.0, -80.0), (-50.0, 80.0), (120.0, 80.0), (120.0, -80.0)]
+    for case in range(300):
+        angles = sorted(chance.uniform(0, 2 * math.pi) for _ in range(chance.choice([3, 4, 6])))
+        own = [(200 * math.cos(a) + 30, 150 * math.sin(a)) for a in angles]
+        own = own if case % 3 else square
+        row = sweep._rows(own)
+        for y in [*(chance.uniform(-200, 200) for _ in range(20)), *(corner[1] for corner in own)]:
+            assert row(y) == row_of(own, y)

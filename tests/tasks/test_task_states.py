@@ -14,7 +14,7 @@ import pytest
 from pipeline_tools import Rig, place, vehicle
 
 from cratous.bridge import lmcp
-from cratous.services.pipeline.tasks import State
+from cratous.services.pipeline.task_state import State
 from cratous.spec.contracts import tasks as table
 
 TASKS = "Task services"

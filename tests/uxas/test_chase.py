@@ -21,7 +21,7 @@ SLOW_M = (30**2 - 20**2) / (2 * 1.0)
 
 def test_who_follows_is_planned_to_its_circle_as_it_is_when_he_gets_there(tmp_path: Path) -> None:
     """One who flies 20 m/s, 3 km behind what flies 15 m/s away, is a turn behind it after so much less; at his
-    greatest speed, 30 m/s, from 5 s ahead of him on, after a third of that, and a little more, since he slows down.
+    greatest speed, 30 m/s, from 3 s ahead of him on, after a third of that, and a little more, since he slows down.
     """
     rig = Rig(tmp_path)
     task = lmcp.new("WatchTask", TaskID=5, WatchedEntityID=ENTITY)
@@ -33,8 +33,8 @@ def test_who_follows_is_planned_to_its_circle_as_it_is_when_he_gets_there(tmp_pa
     )
     seconds = (math.hypot(*entity) - RADIUS_M) / (20 - 15)
     assert math.hypot(*end) == pytest.approx(20 * seconds, rel=0.02)
-    assert math.hypot(*gate) == pytest.approx(5 * 20, abs=1)
-    gap_m = math.hypot(*entity) + 5 * 15 - RADIUS_M - 5 * 20
+    assert math.hypot(*gate) == pytest.approx(3 * 20, abs=1)
+    gap_m = math.hypot(*entity) + 3 * 15 - RADIUS_M - 3 * 20
     seconds = (gap_m + SLOW_M / 20 * (30 - 20)) / (30 - 15)
     assert math.dist(gate, rim) == pytest.approx(gap_m + 15 * seconds, rel=0.02)
     assert chase.Cost == pytest.approx(1000 * seconds, rel=0.02)

@@ -184,3 +184,36 @@ def test_the_simple_manager_passes_a_vehicles_plan_on(tmp_path: Path) -> None:
     rig.tell(response(mission(3), mission(4, vehicle_id=2)))
     (command,) = rig.got("MissionCommand")
     assert (command.VehicleID, numbers(command), command.CommandID) == (2, [1, 2, 3, 4], 1)
+
+
+@pytest.mark.shows(MANAGER, "VehicleActionCommand")
+@pytest.mark.parametrize("kind", ["MissionCommand", "AutomationResponse"])
+def test_a_mission_without_waypoints_is_over_and_the_vehicle_circles_where_it_is(
+    tmp_path: Path, kind: str
+) -> None:
+    rig = manager(tmp_path, 'NumberWaypointsToServe="5" NumberWaypointsOverlap="2"')
+    rig.tell(response(mission(9)))
+    here = at(2).copy(Location=lmcp.new("Location3D", Latitude=1.0, Altitude=9.0), Airspeed=21.0)
+    look = lmcp.new("GimbalAngleAction", PayloadID=3)
+    over = lmcp.new("MissionCommand", VehicleID=1, VehicleActionList=[look])
+    rig.tell(here, over if kind == "MissionCommand" else response(over))
+    (stay,) = rig.got("VehicleActionCommand")
+    first, circle = stay.VehicleActionList
+    assert (stay.VehicleID, stay.CommandID, first) == (1, 2, look)
+    assert (circle.Location, circle.Airspeed, circle.Radius) == (here.Location, 21.0, 200.0)
+    assert (circle.LoiterType.name, circle.Duration) == ("Circular", -1)
+    sent = len(rig.got("MissionCommand"))
+    rig.tell(at(4), lmcp.new("IncrementWaypoint", VehicleID=1))
+    assert len(rig.got("MissionCommand")) == sent, "no segment follows"
+    rig.tell(response(mission(2)))
+    assert rig.got("MissionCommand")[-1].CommandID == 3
+
+
+def test_the_mission_of_a_vehicle_that_was_never_heard_is_over_without_a_command(
+    tmp_path: Path,
+) -> None:
+    rig = manager(tmp_path, 'NumberWaypointsToServe="5" NumberWaypointsOverlap="2"')
+    rig.tell(response(mission(9), lmcp.new("MissionCommand", VehicleID=2)))
+    rig.tell(response(lmcp.new("MissionCommand", VehicleID=1)), at(4))
+    assert len(rig.got("MissionCommand")) == 1
+    assert not rig.got("VehicleActionCommand")
