@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from cratous.core.geofence.motion import seen_from
 from cratous.core.kernel import Vec2, qualified
 from cratous.services.mission.zones import deciding, exact_leg_keeps, exact_leg_ok
+from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, MovingZone, Position, SweptZone, Zone, ZoneKind
 
 
@@ -50,6 +51,16 @@ def exact_moving_leg_ok(
     return exact_leg_ok(ends[0], ends[1], standing(zone))
 
 
+def moving_disc_ok(
+    centre: Position, radius_m: float, times_ms: tuple[int, int], zone: MovingZone
+) -> bool:
+    """Whether a standing disc keeps out of the zone, where that is, from the first to the second instant; exact, but
+    True too little: the radius counts in altitude as well.
+    """
+    p, q = (seen_exactly(centre, time_ms, zone) for time_ms in times_ms)
+    return exact_leg_keeps(p, q, standing(zone), radius_m)
+
+
 class Now(NamedTuple):
     """A moving zone at an instant, and for a while after it [ms]."""
 
@@ -72,6 +83,18 @@ class Now(NamedTuple):
         )
         p, q = (seen_exactly(at, self.at_ms, self.zone) for at in leg)
         return exact_leg_keeps(p, q, standing(self.zone), wide)
+
+
+def refuse_moving(mission: Mission, what: str) -> None:
+    """BadInput for a mission with moving zones; what: for which they are not supported, in words."""
+    for zone in moving_zones(mission):
+        raise BadInput(
+            f"zone {zone.id} moves, which {what}",
+            where=mission.source,
+            item="zones",
+            expected="zones that stand",
+            got=f"a velocity of {zone.velocity_m_s[0]:g} m/s north, {zone.velocity_m_s[1]:g} m/s east",
+        )
 
 
 def moving_deciding(zone: MovingZone) -> tuple[str, ...]:
