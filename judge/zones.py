@@ -117,7 +117,7 @@ def _along(a: Pair, b: Pair, t: Fraction) -> Pair:
     return n + t * (Fraction(b[0]) - n), e + t * (Fraction(b[1]) - e)
 
 
-def _beside(state: State, zone: Zone) -> State:
+def beside(state: State, zone: Zone) -> State:
     """The position relative to where a moving zone is at that instant: it stands where its ring says."""
     gone = Fraction(state.time_ms - zone.from_ms, 1000)
     north, east = (Fraction(part) * gone for part in zone.velocity_m_s)
@@ -151,7 +151,7 @@ def _row(vehicle: int, zone: Zone, track: Track) -> Row:
         if zone.over(before.time_ms):
             break  # a leg that begins before the zone ends is checked as a whole
         checks += 1
-        leg = (_beside(before, zone), _beside(after, zone)) if moves else (before, after)
+        leg = (beside(before, zone), beside(after, zone)) if moves else (before, after)
         if fence.breaks(*leg):
             note = f"broken on the leg from {seconds(before.time_ms)}"
             return Row("G1", subject, item, VIOLATED, note, before.time_ms, checks)

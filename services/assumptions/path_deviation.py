@@ -208,7 +208,7 @@ class NearLegsWatch:
                 if off_m > 2 * MARGINS_M[-1]:
                     break  # the larger margins fail too
                 continue
-            bad = [zone.id for zone in zones if not self._keeps(leg, zone, margin)]
+            bad = [zone.id for zone in zones if not self._keeps(leg, ends, zone, margin)]
             if not bad:
                 return off_m, ""
             why = why or f"which keeps zone {bad[0]} by less than {margin:g} m"
@@ -237,10 +237,10 @@ class NearLegsWatch:
             self._level[key] = _is_level(*key)
         return self._level[key] and _is_beside(p, leg, margin_m)
 
-    def _keeps(self, leg: Leg, zone: Zone | Now, margin_m: float) -> bool:
+    def _keeps(self, leg: Leg, flown: Leg, zone: Zone | Now, margin_m: float) -> bool:
         """Whether a leg keeps a zone by a margin; cached but for a moving zone."""
         if isinstance(zone, Now):
-            return zone.kept_by(leg, margin_m)
+            return zone.kept_by(leg, flown, margin_m)
         key = (leg, zone, margin_m)
         if key not in self._kept:
             self._kept[key] = exact_leg_keeps(*leg, zone, margin_m)

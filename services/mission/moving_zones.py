@@ -6,6 +6,7 @@ polygons decide on it (theorem `geofence_seen_from_a_moving_polygon_it_stands`).
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -14,6 +15,8 @@ from cratous.core.kernel import Vec2, qualified
 from cratous.services.mission.zones import deciding, exact_leg_keeps, exact_leg_ok
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, MovingZone, Position, SweptZone, Zone, ZoneKind
+
+Leg = tuple[Position, Position]
 
 
 def moving_zones(mission: Mission) -> tuple[MovingZone, ...]:
@@ -73,16 +76,31 @@ class Now(NamedTuple):
         """The zone's id."""
         return self.zone.id
 
-    def kept_by(self, leg: tuple[Position, Position], margin_m: float) -> bool:
-        """Whether every point of a leg keeps clear of the zone by a margin [m] all the while; exact, with a bound on
-        how far the zone moves meanwhile.
+    def kept_by(self, leg: Leg, flown: Leg, margin_m: float) -> bool:
+        """Whether the part of a leg beside a flown segment keeps clear of the zone by a margin [m] all the while; exact,
+        with a bound on how far the zone moves meanwhile. What lies ahead and behind is not flown meanwhile.
         """
         north_m_s, east_m_s = map(Fraction, self.zone.velocity_m_s)
         wide: Any = Fraction(margin_m) + Fraction(self.for_ms, 1000) * (
             abs(north_m_s) + abs(east_m_s)
         )
-        p, q = (seen_exactly(at, self.at_ms, self.zone) for at in leg)
+        p, q = (seen_exactly(at, self.at_ms, self.zone) for at in _beside(leg, flown))
         return exact_leg_keeps(p, q, standing(self.zone), wide)
+
+
+def _beside(leg: Leg, flown: Leg) -> Leg:
+    """The part of a leg from which the points of a flown segment are nearest, a metre longer at either end; rational."""
+    (pn, pe, _), (qn, qe, _) = leg
+    north, east = qn - pn, qe - pe
+    square = north * north + east * east
+    if not square:
+        return leg
+    at = [((f.north_m - pn) * north + (f.east_m - pe) * east) / square for f in flown]
+    spare = 1 / math.sqrt(square)
+    ends = [Fraction(min(max(t, 0.0), 1.0)) for t in (min(at) - spare, max(at) + spare)]
+    (an, ae, aa), (bn, be, ba) = (map(Fraction, point) for point in leg)
+    parts: Any = [(an + t * (bn - an), ae + t * (be - ae), aa + t * (ba - aa)) for t in ends]
+    return Position(*parts[0]), Position(*parts[1])
 
 
 def refuse_moving(mission: Mission, what: str) -> None:

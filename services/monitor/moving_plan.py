@@ -44,19 +44,17 @@ def _verdict(zone: MovingZone, vehicle: int, ways: list[tuple[PlanItem, Path, Pa
     for item, transit, path in ways:
         parts = [*_legs(transit, item.depart_ms, item.arrive_ms), *_wait(item)]
         for leg, times_ms, radius_m in (*parts, *_legs(path, item.start_ms, item.end_ms)):
-            spans = _in_force(zone, leg, times_ms)
-            if spans is None:
+            over = zone.until_ms is not None and times_ms[0] >= zone.until_ms
+            if over or times_ms[1] < zone.from_ms:
                 continue
             checks += 1
-            (p, q), during_ms = spans
-            clear = (
-                exact_moving_leg_ok(p, q, during_ms, zone)
-                if radius_m is None
-                else moving_disc_ok(p, radius_m, during_ms, zone)
-            )
+            if radius_m is None:
+                clear = exact_moving_leg_ok(*leg, times_ms, zone)
+            else:
+                clear = moving_disc_ok(leg[0], radius_m, times_ms, zone)
             if not clear and met_ms is None:
-                met_ms = during_ms[0]
-    note = f"{checks} legs and waits, where the zone is then"
+                met_ms = times_ms[0]
+    note = f"{checks} parts of legs and waits, where the zone is then"
     if met_ms is not None:
         note = (
             f"the plan as it is meets the zone from {met_ms / 1000:.1f} s on; "
@@ -76,30 +74,32 @@ def _verdict(zone: MovingZone, vehicle: int, ways: list[tuple[PlanItem, Path, Pa
     )
 
 
+PART_MS = 1000
+"""Longest part of a leg that is checked at once [ms]."""
 Leg = tuple[Position, Position]
 Part = tuple[Leg, tuple[int, int], float | None]
 """A leg, or with a radius a disc that stands, and from when until when it is flown [ms]."""
 
 
 def _legs(way: Path, begin_ms: int, end_ms: int) -> Iterator[Part]:
-    """The legs of a way at a uniform speed, each from the millisecond before to that after."""
+    """The legs of a way at a uniform speed in parts of PART_MS, each from the millisecond before to that after."""
     lengths = [math.dist(p[:2], q[:2]) for p, q in pairwise(way)]
     whole = math.fsum(lengths) or 1.0
     shares = [0.0, *(gone / whole for gone in accumulate(lengths))]
     for (p, q), (first, last) in zip(pairwise(way), pairwise(shares), strict=True):
-        times = (begin_ms + share * (end_ms - begin_ms) for share in (first, last))
-        yield (p, q), (math.floor(next(times)), math.ceil(next(times))), None
+        from_ms, to_ms = (begin_ms + share * (end_ms - begin_ms) for share in (first, last))
+        count = max(1, math.ceil((to_ms - from_ms) / PART_MS))
+        places = [_along(p, q, k / count) for k in range(count + 1)]
+        for k, part in enumerate(pairwise(places)):
+            times = (from_ms + (to_ms - from_ms) * j / count for j in (k, k + 1))
+            yield part, (math.floor(next(times)), math.ceil(next(times))), None
+
+
+def _along(p: Position, q: Position, share: float) -> Position:
+    return Position(*(a + share * (b - a) for a, b in zip(p, q, strict=True)))
 
 
 def _wait(item: PlanItem) -> Iterator[Part]:
     if item.hold is not None and item.wait_ms > 0:
         at = Position(item.hold.north_m, item.hold.east_m, item.hold.alt_m)
         yield (at, at), (item.arrive_ms, item.arrive_ms + item.wait_ms), item.hold.radius_m
-
-
-def _in_force(
-    zone: MovingZone, leg: Leg, times_ms: tuple[int, int]
-) -> tuple[Leg, tuple[int, int]] | None:
-    """The leg with its times where the zone is in force during it; as in flight, as a whole."""
-    over = zone.until_ms is not None and times_ms[0] >= zone.until_ms
-    return None if over or times_ms[1] < zone.from_ms else (leg, times_ms)
