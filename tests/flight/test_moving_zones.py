@@ -247,7 +247,7 @@ def test_a_zone_that_cannot_be_avoided_is_violated_by_monitor_and_judge(tmp_path
     found = judge(folder, tmp_path / "mission.yaml")
     assert [one.line() for one in found.disagreements] == []
     (own,) = [one for one in found.rows if one.item == row["item"]]
-    assert (own.verdict, own.time_ms) == ("violated", row["time_ms"])
+    assert (own.verdict, own.at_ms) == ("violated", row["time_ms"])
 
 
 def _met_late(data: Data) -> None:
