@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from cratous.judge.declared import AfterFailure, after_failure
 from cratous.judge.fields import Node
-from cratous.judge.plane import fault_of_ring
+from cratous.judge.outlines import Point as Point
+from cratous.judge.outlines import Zone as Zone
+from cratous.judge.outlines import drifting, refuse_bad_ring, zone
+from cratous.judge.outlines import pair as pair
+from cratous.judge.outlines import with_ends as with_ends
 from cratous.judge.sites import Fix, Site, fix_of, site_of
 from cratous.judge.views import in_log
-from cratous.spec.errors import BadInput
 
-Point = tuple[float, float]
 SEARCHES = ("line_search", "point_search", "area_search", "pattern_search")
 KINDS = (*SEARCHES, "must_fly", "loiter")
 Said = dict[int, tuple[tuple[int, bool], ...]]
@@ -67,25 +69,6 @@ class Task:
     pattern: str = ""
     extent_m: float = 0.0
     views_deg: tuple[float, ...] = ()
-
-
-@dataclass(frozen=True)
-class Zone:
-    """A polygon (north, east) between two altitudes, known from an instant on, and until one if it ends.
-    padding_m enlarges a keep-out and reduces a keep-in, by distance."""
-
-    id: int
-    keep_in: bool
-    ring: tuple[Point, ...]
-    floor_m: float
-    ceiling_m: float
-    padding_m: float = 0.0
-    from_ms: int = 0
-    until_ms: int | None = None
-
-    def over(self, time_ms: int) -> bool:
-        """Whether it has ended, and applies to no leg that begins at time_ms."""
-        return self.until_ms is not None and time_ms >= self.until_ms
 
 
 class Traffic(NamedTuple):
@@ -190,14 +173,15 @@ def away_because(said: Said, number: int, at_ms: int) -> str:
 def from_log(data: Node) -> Mission:
     """The mission in a log's meta data; BadInput if it is invalid."""
     frame, simulation, daa = data["frame"], data["simulation"], data["daa"]["well_clear"]
-    zones, said, ends = [zone(z) for z in data["zones"]], [], []
+    zones, said, ends = [zone(z) for z in data["zones"] if not z.has("moving")], [], []
+    drift = drifting(data)
     for change in data["changes"]:
         kind, at = change["kind"].one_of(*CHANGES), _not_negative(change["at_ms"])
         if kind == "zone":
-            zones.append(zone(change["zone"], at))
-        elif kind == "zone_ends":
+            zones += [] if change["zone"].has("moving") else [zone(change["zone"], at)]
+        elif kind == "zone_ends" and change["zone_id"].whole not in drift:
             ends.append((change["zone_id"], at))
-        elif kind not in ASK_NOTHING:
+        elif kind not in (*ASK_NOTHING, "zone_ends"):
             number = change["vehicle" if kind.startswith("vehicle") else "task"].whole
             said.append((kind, number, at))
     volume = Volume(*(daa[name].real for name in Volume._fields))
@@ -216,7 +200,7 @@ def from_log(data: Node) -> Mission:
         longitude_deg=frame["longitude_deg"].real,
         vehicles=by_id([_vehicle(v) for v in data["vehicles"]], data["vehicles"]),
         tasks=by_id([_task(t) for t in data["tasks"]], data["tasks"]),
-        zones=with_ends(zones, ends),
+        zones=(*with_ends(zones, ends), *drift.values()),
         traffic=tuple(_traffic(t) for t in data["traffic"]),
         relations=data["relations"].text,
         instances=frozenset(n.whole for n in data["instances"]),
@@ -257,47 +241,6 @@ def check(mission: Mission, data: Node) -> None:
         raise data["changes"].wrong(f"vehicles and tasks that exist, not {strange[0]}")
 
 
-def zone(data: Node, from_ms: int = 0) -> Zone:
-    """A zone; BadInput if its outline is no simple polygon."""
-    found = Zone(
-        data["id"].whole,
-        data["kind"].one_of("keep_in", "keep_out") == "keep_in",
-        tuple(pair(v) for v in data["vertices"]),
-        data["floor_m"].real,
-        data["ceiling_m"].real,
-        data["padding_m"].real,
-        from_ms,
-    )
-    refuse_bad_ring(found.ring, data["vertices"])
-    if found.padding_m < 0:
-        raise data["padding_m"].wrong("0 or more")
-    return found
-
-
-def with_ends(zones: Sequence[Zone], ends: Sequence[tuple[Node, int]]) -> tuple[Zone, ...]:
-    """The zones with their end times, if any; BadInput for an end of an unknown zone.
-
-    ends: the id of a zone, and its end time [ms]."""
-    known, until = {one.id: one.from_ms for one in zones}, dict[int, int]()
-    for number, at in ends:
-        if number.whole in until or at <= known.get(number.whole, at):
-            raise number.wrong("a zone that is known by then, once")
-        until[number.whole] = at
-    return tuple(replace(one, until_ms=until.get(one.id)) for one in zones)
-
-
-def refuse_bad_ring(ring: tuple[Point, ...], data: Node) -> None:
-    """BadInput if these corners are not a simple polygon."""
-    fault = fault_of_ring(ring)
-    if fault:
-        raise BadInput(
-            f"not a simple polygon: {fault}",
-            where=data.where,
-            item=data.item,
-            expected="at least three corners, and edges that meet nowhere else",
-        )
-
-
 def lines_fail(faults: Node, unit: str) -> bool:
     """Whether bridge faults lose, damage or delay lines, or ICAROUS stops reading. unit: suffix of names."""
     if not isinstance(faults.data, dict):
@@ -305,14 +248,6 @@ def lines_fail(faults: Node, unit: str) -> bool:
     shares = ("loss", "truncation", "corruption", f"delay{unit}")
     stops = faults.has(f"stops_reading{unit}")
     return stops or any(faults.get(name, 0).real for name in shares)
-
-
-def pair(data: Node) -> Point:
-    """Two numbers."""
-    found = tuple(x.real for x in data)
-    if len(found) != 2:
-        raise data.wrong("two numbers")
-    return found[0], found[1]
 
 
 def by_id(found: Sequence[Any], data: Node) -> dict[int, Any]:

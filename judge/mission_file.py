@@ -17,6 +17,7 @@ from cratous.judge import mission as m
 from cratous.judge.declared import after_failure
 from cratous.judge.earth import to_local
 from cratous.judge.fields import Node
+from cratous.judge.outlines import moved, moves, zone
 from cratous.judge.sites import Fix, Site
 from cratous.judge.views import in_file
 from cratous.spec.errors import BadInput
@@ -68,7 +69,8 @@ class _Reader:
 
     def mission(self) -> m.Mission:
         root = self.root
-        zones = [self.zone(z, 0) for z in root.get("zones", [])]
+        zones = [self.zone(z, 0) for z in root.get("zones", []) if not moves(z)]
+        drift = [self.drift(z) for z in root.get("zones", []) if moves(z)]
         said, ends = [], []
         for change in root.get("changes", []):
             at = _ms(change["at_s"])
@@ -97,7 +99,7 @@ class _Reader:
             longitude_deg=self.origin[1],
             vehicles=m.by_id(vehicles, root["vehicles"]),
             tasks=m.by_id([self.task(t) for t in root["tasks"]], root["tasks"]),
-            zones=m.with_ends(zones, ends),
+            zones=(*m.with_ends(zones, ends), *drift),
             traffic=tuple(self.traffic(t) for t in root.get("traffic", [])),
             relations=root.get("relations", "").text,
             instances=frozenset(guarded[: max(count, 0)]),
@@ -150,7 +152,12 @@ class _Reader:
             "ceiling_m": data.get("ceiling_m", 100_000.0).data,
             "padding_m": data.get("padding_m", 0.0).data,
         }
-        return m.zone(Node(plain, data.where, data.item), from_ms)
+        return zone(Node(plain, data.where, data.item), from_ms)
+
+    def drift(self, data: Node) -> m.Zone:
+        """A zone that moves; its times are its own."""
+        until = _ms(data["until_s"]) if data.has("until_s") else None
+        return moved(self.zone(data, _ms(data.get("from_s", 0))), data["velocity_m_s"], until)
 
     def vehicle(self, data: Node) -> m.Vehicle:
         cameras = tuple(

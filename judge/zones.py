@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from cratous.judge.log import State
 from cratous.judge.mission import Mission, Zone
@@ -19,6 +19,7 @@ from cratous.judge.tracks import Track
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, doubted, seconds
 
 WIDER = 1 + 1e-9
+NEVER = "the zone did not become known in flight"
 
 
 class _Edge(NamedTuple):
@@ -116,6 +117,14 @@ def _along(a: Pair, b: Pair, t: Fraction) -> Pair:
     return n + t * (Fraction(b[0]) - n), e + t * (Fraction(b[1]) - e)
 
 
+def beside(state: State, zone: Zone) -> State:
+    """The position relative to where a moving zone is at that instant: it stands where its ring says."""
+    gone = Fraction(state.time_ms - zone.from_ms, 1000)
+    north, east = (Fraction(part) * gone for part in zone.velocity_m_s)
+    place: Any = (Fraction(state.north_m) - north, Fraction(state.east_m) - east)
+    return state._replace(north_m=place[0], east_m=place[1])
+
+
 def rows(mission: Mission, flown: dict[int, Track]) -> Iterator[Row]:
     """One row for each protected vehicle and zone."""
     for vehicle in mission.protected:
@@ -133,16 +142,17 @@ def _row(vehicle: int, zone: Zone, track: Track) -> Row:
     if first >= len(track.states) - (zone.from_ms > 0):
         if track.states and not track.doubt:
             # the one check: the whole flight was before it
-            note = "the zone did not become known in flight"
+            note = "the zone was not in force in flight" if any(zone.velocity_m_s) else NEVER
             return Row("G1", subject, item, HOLDS, note, checks=1)
         return Row("G1", subject, item, UNKNOWN, track.doubt or "no position was logged")
-    fence = Fence(zone)
+    fence, moves = Fence(zone), any(zone.velocity_m_s)
     checks = 0
     for before, after in track.legs(first):
         if zone.over(before.time_ms):
             break  # a leg that begins before the zone ends is checked as a whole
         checks += 1
-        if fence.breaks(before, after):
+        leg = (beside(before, zone), beside(after, zone)) if moves else (before, after)
+        if fence.breaks(*leg):
             note = f"broken on the leg from {seconds(before.time_ms)}"
             return Row("G1", subject, item, VIOLATED, note, before.time_ms, checks)
     if not checks:

@@ -39,6 +39,11 @@ def along(p: Point, q: Point, t: float) -> Point:
     return Point(p.x + t * (q.x - p.x), p.y + t * (q.y - p.y))
 
 
+def moved(p: Point, velocity: Point, t: float) -> Point:
+    """The point that has moved straight at a velocity for a time t."""
+    return Point(p.x + t * velocity.x, p.y + t * velocity.y)
+
+
 def turn(a: Point, b: Point, c: Point) -> float:
     """Determinant of (b - a, c - a): positive for a left turn in an x-y frame."""
     return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
@@ -97,6 +102,16 @@ def left_of(p: Point, a: Point, b: Point) -> bool:
     return turn(a, b, p) >= 0
 
 
+def right_at(
+    a: Point, b: Point, m: Point, velocity: Point, begin: float, end: float, t: float
+) -> bool:
+    """The moving point is right of the line from a to b at the instant t of [begin, end].
+
+    m: the point at time 0. THERE IS an instant at which it is right of the line.
+    """
+    return t >= begin and t <= end and not left_of(moved(m, velocity, t), a, b)
+
+
 def square_point_left_of(
     a: Point, b: Point, centre: Point, half: float, u: float, v: float
 ) -> bool:
@@ -115,6 +130,27 @@ def every_step(so_far: bool, here: bool) -> bool:
 def common_point(p: Point, q: Point, a: Point, b: Point, s: float, t: float) -> bool:
     """The point of p-q at s and the point of a-b at t are the same point of both segments."""
     one, other = along(p, q, s), along(a, b, t)
+    inside = s >= 0 and s <= 1 and t >= 0 and t <= 1
+    return inside and one.x == other.x and one.y == other.y
+
+
+class Movement(NamedTuple):
+    """A polygon that moves straight: its velocity, and the times at the beginning and end of a leg, since it stood
+    where its vertices are given.
+    """
+
+    velocity: Point
+    begin: float
+    end: float
+
+
+def moved_edge_met(
+    p: Point, q: Point, a: Point, b: Point, movement: Movement, s: float, t: float
+) -> bool:
+    """The point of the leg p-q at s is, at the instant at which it is flown, the point of the moved edge a-b at t."""
+    at = movement.begin + s * (movement.end - movement.begin)
+    one = along(p, q, s)
+    other = along(moved(a, movement.velocity, at), moved(b, movement.velocity, at), t)
     inside = s >= 0 and s <= 1 and t >= 0 and t <= 1
     return inside and one.x == other.x and one.y == other.y
 

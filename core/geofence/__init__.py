@@ -31,6 +31,8 @@ import numpy as np
 from cratous.core.geofence import arrays
 from cratous.core.geofence.distance import AT, FARTHER, NEARER, boundary_distance
 from cratous.core.geofence.legs import Shape, Stretch, passage, regions_of, spans
+from cratous.core.geofence.motion import seen_from
+from cratous.core.geofence.recovery import recovery
 from cratous.core.geofence.regions import narrowed_place, widened_place
 from cratous.core.geofence.shapes import (
     BadPolygon,
@@ -48,7 +50,7 @@ from cratous.spec.errors import BadInput
 __all__ = [
     "AT", "FARTHER", "NEARER", "BadPolygon", "Fault", "Place", "Polygon", "Region", "Stretch",
     "against_buffer", "buffered_places", "contact", "fault_of", "leg_places", "leg_stays_inside",
-    "leg_stays_outside", "place", "places", "places_in_each", "polygon", "region",
+    "leg_stays_outside", "place", "places", "places_in_each", "polygon", "recovery_point", "region",
     "squared_distance", "times_inside",
 ]  # fmt: skip
 
@@ -233,6 +235,37 @@ def squared_distance(point: Any, shape: Polygon) -> Fraction:
     return Fraction(ratio.num) / Fraction(ratio.den)
 
 
+def recovery_point(
+    point: Any, shape: Polygon, distance_m: float, *, inside: bool
+) -> tuple[float, float] | None:
+    """The nearest point that is inside a polygon (or outside of it) by a distance [m], exactly proved.
+
+    It is strictly inside, or outside, and no point of the boundary is nearer to it than distance_m
+    (kernels `locate` and `boundary_against`); the point itself if that is true of it. How near it is
+    is computed on doubles: it is a nearest one but for rounding, about a billionth of the largest
+    coordinate. None: no point inside is that far from the boundary, or by no more than that.
+
+    >>> square = polygon([(0, 0), (10, 0), (10, 10), (0, 10)])
+    >>> [round(value, 6) for value in recovery_point((1, 5), square, 3, inside=True)]
+    [3.0, 5.0]
+    >>> [round(value, 6) for value in recovery_point((9, 5), square, 4, inside=False)]
+    [14.0, 5.0]
+    >>> recovery_point((1, 5), square, 6, inside=True) is None
+    True
+    """
+    found = _points(point, "recovery_point", "point", False)
+    width = _buffer(distance_m, "recovery_point")
+    if found.ndim != 1 or width.ndim:
+        raise BadInput(
+            "one point and one distance are wanted",
+            where="recovery_point",
+            item="point",
+            got=f"{found.shape}, {width.shape}",
+        )
+    wanted = Place.INSIDE if inside else Place.OUTSIDE
+    return recovery(float(found[0]), float(found[1]), _flat(shape), float(width), wanted)
+
+
 # -- legs -------------------------------------------------------------------------------
 def contact(starts: Any, ends: Any, shape: Polygon) -> np.ndarray:
     """True for each leg that has a point in common with the polygon's boundary.
@@ -245,7 +278,10 @@ def contact(starts: Any, ends: Any, shape: Polygon) -> np.ndarray:
     return arrays.contact(p[..., 0], p[..., 1], q[..., 0], q[..., 1], _flat(shape))
 
 
-def _leg(p: Any, q: Any, shapes: Shape | Iterable[Shape], where: str) -> tuple[Stretch, ...]:
+def _leg(
+    p: Any, q: Any, shapes: Shape | Iterable[Shape], where: str, motion: Any = None
+) -> tuple[Stretch, ...]:
+    """motion: the shapes' velocity, and when p and q are passed; all rational."""
     if not isinstance(shapes, Polygon | Region):
         shapes = tuple(shapes)
         if not shapes:
@@ -264,6 +300,11 @@ def _leg(p: Any, q: Any, shapes: Shape | Iterable[Shape], where: str) -> tuple[S
         raise BadInput(
             "one end has an altitude", where=where, expected="both or neither", got=f"{p}, {q}"
         )
+    if motion is not None:
+        velocity, *times = motion
+        for k, (end, at) in enumerate(zip(ends, times, strict=True)):
+            here: Any = seen_from(Vec2(*end[:2]), Vec2(*velocity), at)  # type: ignore[arg-type]
+            ends[k] = (*here, *end[2:])
     return passage(ends[0], ends[1], regions)
 
 
@@ -312,14 +353,19 @@ def times_inside(
     begin_s: float = 0,
     end_s: float = 1,
     boundary: bool = True,
+    velocity_m_s: tuple[float, float] = (0, 0),
 ) -> tuple[tuple[Fraction, Fraction], ...]:
     """When a straight flight is in the union of the shapes: (entry, exit) pairs, exact [s].
 
     p, q: where it is at begin_s and at end_s. boundary: the boundary counts as inside; without it
-    the spans are those of the open part, of which entry and exit are the bounds.
+    the spans are those of the open part, of which entry and exit are the bounds. velocity_m_s: of all
+    shapes, (x, y) [m/s]; they are where their vertices say at the time 0.
 
     >>> gate = polygon([(10, 0), (20, 0), (20, 10), (10, 10)])
     >>> [(str(a), str(b)) for a, b in times_inside((0, 5), (30, 5), gate, end_s=60)]
+    [('20', '40')]
+    >>> found = times_inside((0, 5), (60, 5), gate, end_s=60, velocity_m_s=(0.5, 0))
+    >>> [(str(a), str(b)) for a, b in found]
     [('20', '40')]
     """
     if not (np.isfinite(begin_s) and np.isfinite(end_s) and begin_s <= end_s):
@@ -332,5 +378,11 @@ def times_inside(
         )
     first, length = Fraction(begin_s), Fraction(end_s) - Fraction(begin_s)
     least = Place.BOUNDARY if boundary else Place.INSIDE
-    found = spans(_leg(p, q, shapes, "times_inside"), least)
+    v = _points(velocity_m_s, "times_inside", "velocity_m_s", False)
+    if v.shape != (2,):
+        raise BadInput(
+            "one velocity is wanted", where="times_inside", item="velocity_m_s", got=str(v.shape)
+        )
+    motion = tuple(map(Fraction, v.tolist())), first, first + length
+    found = spans(_leg(p, q, shapes, "times_inside", motion), least)
     return tuple((first + length * a, first + length * b) for a, b in found)

@@ -22,9 +22,10 @@ from cratous.core.routing.polylines import Track
 from cratous.services.assumptions.authority import UNTOUCHED, has_it, reported, sender_of
 from cratous.services.assumptions.observations import ANY_LATER, Message, Record, gone_ms
 from cratous.services.mission.frames import Projection
-from cratous.services.mission.zone_times import zones_of
+from cratous.services.mission.moving_zones import Now
+from cratous.services.mission.zone_times import judged_zones
 from cratous.services.mission.zones import exact_leg_keeps
-from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.mission import Mission, MovingZone, Position, Zone
 
 MARGINS_M = (1.0, 2.0, 5.0, 10.0, 20.0)
 """Candidate margins: the smallest sufficient one is used; the last is the routes' clearance from
@@ -173,7 +174,12 @@ class NearLegsWatch:
         if self._paths.get(number) is path:
             self._paths[number] = path._replace(s_m=max(path.s_m, min(last, track.length_m)))
         ends = (before[1], here)
-        zones = [b.zone for b in zones_of(self._mission, before[0] + 1) if b.binds(before[0])]
+        times_ms, step_ms = before[0], self._mission.simulation.step_ms
+        zones = [
+            Now(b.zone, times_ms, step_ms) if isinstance(b.zone, MovingZone) else b.zone
+            for b in judged_zones(self._mission, before[0] + 1)
+            if b.binds(before[0])
+        ]
         asked = self._near.get(number, {})
         near, why = self._beside(ends, path.legs(min(first, last), max(first, last)), zones, asked)
         if why and self._record.broken is None:
@@ -187,7 +193,7 @@ class NearLegsWatch:
         self._record.see(near)
 
     def _beside(
-        self, ends: Leg, legs: list[Leg], zones: list[Zone], asked: Asked
+        self, ends: Leg, legs: list[Leg], zones: list[Zone | Now], asked: Asked
     ) -> tuple[float, str]:
         """Distance of the nearest leg that keeps the zones [m]; otherwise of the nearest, and why
         none qualifies.
@@ -202,7 +208,7 @@ class NearLegsWatch:
                 if off_m > 2 * MARGINS_M[-1]:
                     break  # the larger margins fail too
                 continue
-            bad = [zone.id for zone in zones if not self._keeps(leg, zone, margin)]
+            bad = [zone.id for zone in zones if not self._keeps(leg, ends, zone, margin)]
             if not bad:
                 return off_m, ""
             why = why or f"which keeps zone {bad[0]} by less than {margin:g} m"
@@ -231,8 +237,10 @@ class NearLegsWatch:
             self._level[key] = _is_level(*key)
         return self._level[key] and _is_beside(p, leg, margin_m)
 
-    def _keeps(self, leg: Leg, zone: Zone, margin_m: float) -> bool:
-        """Whether a leg keeps a zone by a margin; cached."""
+    def _keeps(self, leg: Leg, flown: Leg, zone: Zone | Now, margin_m: float) -> bool:
+        """Whether a leg keeps a zone by a margin; cached but for a moving zone."""
+        if isinstance(zone, Now):
+            return zone.kept_by(leg, flown, margin_m)
         key = (leg, zone, margin_m)
         if key not in self._kept:
             self._kept[key] = exact_leg_keeps(*leg, zone, margin_m)

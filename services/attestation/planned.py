@@ -56,7 +56,8 @@ def _expected(report: Data) -> set[str]:
     over = {change["zone_id"] for change in begun if change.get("zone_id")}
     appeared = [change["zone"] for change in begun if change.get("zone")]
     return must | {
-        f"zone: {zone['kind']} {zone['id']}, planned route of vehicle {number}"
+        f"zone: {zone['kind']} {zone['id']}{', region at the start' if 'moving' in zone else ''}, "
+        f"planned route of vehicle {number}"
         for zone in (*mission["zones"], *appeared)
         for number in vehicles
         if zone["id"] not in over

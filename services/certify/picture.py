@@ -9,6 +9,8 @@ from __future__ import annotations
 from math import cos, floor, log10, pi, sin
 from typing import Any
 
+from cratous.services.certify.zone_positions import positions
+
 MAP_WIDTH, MAP_HEIGHT, MAP_EDGE, MAP_FOOT = 640.0, 504.0, 40.0, 24.0
 LETTER = (10.0, 19.0)
 """Maximum width and height of a letter on a narrow screen, in drawing units."""
@@ -65,8 +67,11 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
         (point["north_m"], point["east_m"]) for task in mission["tasks"] for point in task["points"]
     ]
     shown += [(v["position"]["north_m"], v["position"]["east_m"]) for v in mission["vehicles"]]
-    zones = [(zone, None) for zone in mission["zones"]]
-    zones += [(c["zone"], c["at_ms"] / 1000) for c in mission.get("changes", []) if c["zone"]]
+    zones = [(zone, None) for zone in mission["zones"] if "moving" not in zone]
+    late = [(c["zone"], c["at_ms"] / 1000) for c in mission.get("changes", []) if c["zone"]]
+    zones += [(zone, at_s) for zone, at_s in late if "moving" not in zone]
+    drifting = [zone for zone in (*mission["zones"], *(z for z, _ in late)) if "moving" in zone]
+    zones += positions(drifting, flight["end_ms"])
     ends = {c["zone_id"]: c["at_ms"] / 1000 for c in mission.get("changes", []) if "zone_id" in c}
     for zone, _ in zones:
         if zone["kind"] == "keep_out":
@@ -168,7 +173,10 @@ def _said(
     if from_s is None and until_s is None:
         return None
     text = f"zone {zone['id']}"
-    text += "" if from_s is None else f", from {from_s:g} s"
+    if "at_s" in zone:
+        text, until_s = f"{text} at {zone['at_s']:g} s", None
+    else:
+        text += "" if from_s is None else f", from {from_s:g} s"
     text += "" if until_s is None else f", until {until_s:g} s"
     corners = [scale.xy(*corner) for corner in zone["vertices"]]
     left, high, low = (f(c[k] for c in corners) for f, k in ((min, 0), (min, 1), (max, 1)))

@@ -278,11 +278,14 @@ def as_flown(
 
 def tell_plan(mission: Mission, plan: Plan, checks: list[Verdict], tell: Tell) -> None:
     """Report unsuitable parameters, the plan, what it leaves out, and vehicles absent at the start."""
+    from cratous.services.monitor.moving_plan import meeting_lines
+
     for line in (
         *(f"note: {text}" for text in warnings_of(mission)),
         plan_line(mission, plan, checks),
         *left_out_lines(plan),
         *absent_lines(mission),
+        *meeting_lines(mission, plan),
         *states_lines(mission),
     ):
         tell(line)

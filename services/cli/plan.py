@@ -144,12 +144,14 @@ def _planned(loaded: Mission, job: _Job) -> tuple[dict[str, Any], int]:
     from cratous.services.cli.progress import waiting
     from cratous.services.cli.relation_places import RelationPlaces
     from cratous.services.logs.records import to_data
+    from cratous.services.monitor.moving_plan import check_in_time
 
     bus, standing, task = new_bus(), job.standing, job.task
     with waiting("planning", job.as_json) as wait:
         bus.tap(planning_told(wait.at, len(loaded.tasks)))
         with counted() as calls, RelationPlaces(loaded).in_reasons():
             made, checks = plan_and_check(loaded, bus)
+            checks += check_in_time(loaded, made)
             instead = None if task is None else reasons_of(loaded, made, task)
         wait.at("gathering the evidence")
         evidence = inventory(standing, calls.data())

@@ -22,6 +22,7 @@ from cratous.services.exporting.uxas import (
 )
 from cratous.services.loading import count_requests, load
 from cratous.services.loading.document import Document, read_document
+from cratous.services.mission.moving_zones import refuse_moving
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission
 from cratous.spec.mission.plan import Plan
@@ -61,6 +62,7 @@ def exported(
 
     Exports for AMASE and UxAS are read again; differences show what was not represented.
     """
+    refuse_moving(mission, f"the format {form} cannot represent")
     if form in MAPS:
         text = MAPS[form](mission, plan)
         return Exported({f"{mission.name}.{ENDINGS[form]}": text}, tuple(unsaid(mission)))

@@ -26,9 +26,17 @@ from cratous.services.mission.availability import absent, without
 from cratous.services.mission.wind import all_in_wind, in_wind, known_at, told, wind_at
 from cratous.spec.algebra.meaning import tasks
 from cratous.spec.executive import FOR_CHANGE
-from cratous.spec.mission import Change, ZoneKind
+from cratous.spec.mission import Change, SweptZone, ZoneKind
 from cratous.spec.mission.asked import asked, term_of
-from cratous.spec.mission.changes import DIRECT, ZONE_ENDS, ZoneEnd, split, with_choices, words
+from cratous.spec.mission.changes import (
+    DIRECT,
+    ZONE_ENDS,
+    ZoneEnd,
+    in_force,
+    split,
+    with_choices,
+    words,
+)
 from cratous.spec.mission.plan import Plan, left_out_of
 from cratous.spec.records import replace
 
@@ -76,11 +84,15 @@ def change(config: Config, state: State, due: Sequence[Change], out: Out) -> Sta
     kept = tuple(zone for zone in state.zones if zone.id not in ended)
     # every route is sent to ICAROUS again, since it avoids the zones as well
     chains = tuple(replace(chain, told_version=-1) for chain in state.chains)
-    state = replace(state, zones=(*kept, *zones), chains=chains)
+    state = replace(state, zones=in_force(kept, zones), chains=chains)
     out.append(ZonesKnown(state.zones))
     what = "; ".join(words(c) for c in due)
     settled = dict(state.ends).keys() | dict(state.failed).keys()
-    undone = {c: undone_by(c, state.plan, settled) for c in due if c.kind == ZONE_ENDS}
+    undone = {
+        c: undone_by(c, state.plan, settled)
+        for c in due
+        if c.kind == ZONE_ENDS or isinstance(c.zone, SweptZone)
+    }
     aircraft = {vid: state.from_where(vid) for vid, _ in state.aircraft}
     touched = touched_by(due, zones, state.by_vehicle(), dict(state.ends), aircraft, undone)
     missed = orders_missed(known, due, dict(state.starts), dict(state.ends)) if touched else ""

@@ -41,6 +41,7 @@ from cratous.services.mission.frames import Projection
 from cratous.services.mission.ground import floor_of
 from cratous.services.mission.landing import on_failure_of
 from cratous.services.mission.merging import merging_of
+from cratous.services.mission.moving_zones import moving_zones
 from cratous.services.mission.take_off import grounded
 from cratous.services.planning.performance_classes import MOMENT_MS, straight
 from cratous.services.sensing import surveillance
@@ -122,12 +123,13 @@ def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
 def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
     """The route of each vehicle: its start position and its must_fly points, in the order of the file.
 
-    BadInput for relations, changes in flight, bridge faults, `link_loss`, `on_failure`, `merging`, starts on the ground, other
+    BadInput for relations, moving zones, changes in flight, bridge faults, `link_loss`, `on_failure`, `merging`, starts on the ground, other
     kinds of task, tasks without exactly one eligible vehicle, vehicles without a task, and missions without a
     protected vehicle, in which there is nothing to judge.
     """
     for item, there in (
         ("relations", mission.relations),
+        ("zones.velocity_m_s", moving_zones(mission)),
         ("changes", mission.changes),
         ("simulation.bridge_faults", isinstance(mission.simulation, FaultySimulation)),
         ("link_loss", mission.link_loss is not None),

@@ -84,6 +84,7 @@ from cratous.spec.authority.link_end import (
     TAKE_BACK,
 )
 from cratous.spec.mission import Velocity, Zone
+from cratous.spec.mission.changes import is_next
 from cratous.spec.records import replace
 
 LINK_LOST_MS = 2000
@@ -238,15 +239,17 @@ class UxasEnd:
             told: list[Message] = [UxasPlans()] if self.live else []
             if old is not None and old.outdated:
                 told.append(ForgetFences())
-            told += [*self._fences(state.zones, 0), *link_lines.onward(peer.way, peer.reached)]
+            told += [*self._fences(state.zones), *link_lines.onward(peer.way, peer.reached)]
             out += down_to(peer, told + of_others(state, vid, self.projection))
             out.append(_status(peer, True, now_ms, "connected again" if old else "connected"))
         return state, tuple(out)
 
     def _zones(self, state: State, zones: tuple[Zone, ...]) -> Step:
         known = len(state.zones)
-        more = zones[:known] == state.zones
-        fences = self._fences(zones, known if more else 0)
+        # a region of a moving zone replaces the one before it under its number
+        same = (a == b or is_next(a, b) for a, b in zip(state.zones, zones, strict=False))
+        more = known <= len(zones) and all(same)
+        fences = self._fences(zones, state.zones if more else ())
         out: list[FromLinkEnd] = []
         for peer in state.peers:
             others = of_others(state, peer.vehicle_id, self.projection)
@@ -259,11 +262,13 @@ class UxasEnd:
             state = state.with_peer(replace(peer, again=(), outdated=outdated))
         return replace(state, zones=zones), tuple(out)
 
-    def _fences(self, zones: tuple[Zone, ...], known: int) -> list[Message]:
-        """The zones after the first `known`, as lines."""
-        fresh = list(enumerate(zones, 1))[known:]
+    def _fences(self, zones: tuple[Zone, ...], known: tuple[Zone, ...] = ()) -> list[Message]:
+        """The zones that differ from those known at their number, as lines."""
         return [
-            m for number, zone in fresh for m in link_lines.fence(zone, number, self.projection)
+            line
+            for number, zone in enumerate(zones, 1)
+            if zone not in known[number - 1 : number]
+            for line in link_lines.fence(zone, number, self.projection)
         ]
 
     def _route(self, peer: Peer, route: Route) -> tuple[Peer, tuple[FromLinkEnd, ...]]:

@@ -14,7 +14,7 @@ from cratous.spec import executive
 from cratous.spec.algebra.meaning import branches, rows
 from cratous.spec.algebra.partial import waits_for
 from cratous.spec.constraint_rows import AFTER_END
-from cratous.spec.mission import Change, Mission, Zone
+from cratous.spec.mission import Change, Mission, SweptZone, Zone
 from cratous.spec.mission.asked import term_of
 from cratous.spec.mission.changes import (
     TASK_ADDED,
@@ -86,14 +86,18 @@ def nobody_may(known: Mission, left: Collection[int], absent: Mapping[int, str])
 
 
 def undone_by(change: Change, plan: Plan, settled: Collection[int]) -> list[int]:
-    """The unsettled tasks that the plan leaves out, or does only in part because of the zone that ends.
+    """The unsettled tasks that the plan leaves out, or does only in part because of the zone that ends or has moved on.
 
     settled: tasks that have ended or were given up. Empty for other changes.
     """
-    if not isinstance(change, ZoneEnd):
+    if isinstance(change, ZoneEnd):
+        zone_id = change.zone_id
+    elif isinstance(change.zone, SweptZone):
+        zone_id = change.zone.id
+    else:
         return []
     tasks = {one.task_id for one in left_out_of(plan)}
-    tasks |= {one.task_id for one in in_part_of(plan) if change.zone_id in one.zones}
+    tasks |= {one.task_id for one in in_part_of(plan) if zone_id in one.zones}
     return sorted(tasks.difference(settled))
 
 
@@ -134,14 +138,16 @@ def touched_by(
     """
     left = left_by(chains)
     for change in due:
-        kind = KINDS.get(change.kind, executive.OTHER)
+        moved_on = isinstance(change.zone, SweptZone)
+        kind = executive.ZONE_ENDED if moved_on else KINDS.get(change.kind, executive.OTHER)
         tasks = undone.get(change, left.get(change.vehicle, []))
         if not change_counts(kind, len(tasks), change.task in ended):
             continue
         if kind == executive.LOST:
             return f"vehicle {change.vehicle} leaves {tasks_text(tasks)}"
         if kind == executive.ZONE_ENDED:
-            return f"{tasks_text(tasks)} may be done, or done whole, without it"
+            where = "where it is now" if moved_on else "without it"
+            return f"{tasks_text(tasks)} may be done, or done whole, {where}"
         if kind == executive.REMOVED:
             return f"task {change.task} is left out"
         return "what is left is shared out again"

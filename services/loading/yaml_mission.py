@@ -26,6 +26,12 @@ from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import Document, item_key, read_document
 from cratous.services.loading.fitness import warnings_of
 from cratous.services.loading.landing_sites import ground_problems
+from cratous.services.loading.moving_zones import (
+    as_given,
+    movement_of,
+    moving_problems,
+    with_regions,
+)
 from cratous.services.loading.polygons import padded
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
@@ -121,6 +127,7 @@ def finish(mission: Mission, where: Any) -> Mission:
     later = tuple(c.zone for c in mission.changes if c.zone is not None)
     refuse(mission_problems(replace(mission, zones=(*mission.zones, *later)), where))
     refuse([*change_problems(mission, where), *zone_end_problems(mission, where)])
+    refuse([*moving_problems(mission, where)])
     refuse(list(guidance_problems(mission, where)))
     notes = [] if mission.bridge_times == USUAL else [bridge_words(mission.bridge_times)]
     problems: list[BadInput] = []
@@ -154,7 +161,8 @@ def finish(mission: Mission, where: Any) -> Mission:
         notes.append(on_failure_words(after))
     if grounded(mission):
         notes.append(take_off_words(mission))
-    mission = replace(mission, zones=zones, changes=known)
+    mission, moving = with_regions(replace(mission, zones=zones, changes=known))
+    notes += moving
     places = (
         *place_problems(mission, where),
         *ground_problems(mission, where),
@@ -268,7 +276,7 @@ def _camera(data: dict[str, Any]) -> Camera:
 
 
 def _zone(data: dict[str, Any], places: Places) -> Zone:
-    return Zone(
+    zone = Zone(
         id=int(data["id"]),
         kind=ZoneKind(data["kind"]),
         vertices=tuple(places.vertex(vertex) for vertex in data["vertices"]),
@@ -277,6 +285,8 @@ def _zone(data: dict[str, Any], places: Places) -> Zone:
         padding_m=float(data.get("padding_m", 0.0)),
         label=data.get("label", ""),
     )
+    movement = movement_of(data)
+    return zone if movement is None else as_given(zone, movement)
 
 
 def _change(data: dict[str, Any], places: Places) -> Change:

@@ -12,8 +12,14 @@ from cratous.core.authority.timeliness import in_time
 from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, runs_forward
+from cratous.services.mission.moving_zones import (
+    exact_moving_leg_ok,
+    moving_deciding,
+    seen,
+    standing,
+)
 from cratous.services.mission.wind import in_wind, wind_at
-from cratous.services.mission.zone_times import Bound, zones_of
+from cratous.services.mission.zone_times import Bound, judged_zones
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok, margin_m
 from cratous.services.monitor.avoidable import Appeared, avoidable
 from cratous.services.monitor.observation import Ending, Presence
@@ -26,8 +32,8 @@ from cratous.services.monitor.required_rows import (
 )
 from cratous.services.monitor.samples import Sample
 from cratous.spec.constraint_rows import AFTER_END, AFTER_START, Row
-from cratous.spec.mission import Mission, Position, Zone, ZoneKind
-from cratous.spec.mission.changes import requested_ms
+from cratous.spec.mission import Mission, MovingZone, Position, Zone, ZoneKind
+from cratous.spec.mission.changes import known_at, requested_ms
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission.plan import Pose
 
@@ -88,7 +94,7 @@ class ConstraintWatch:
         self._who: dict[int, list[int]] = {}
         self._failed: set[int] = set()
         self._fences: dict[tuple[int, int], Fence] = {}
-        self._tracks: dict[int, list[Position]] = {}
+        self._tracks: dict[int, list[tuple[int, Position]]] = {}
         self._came: dict[int, tuple[Sample, Sample]] = {}  # last observed leg of each vehicle
         self.violations: list[Verdict] = []
 
@@ -109,32 +115,41 @@ class ConstraintWatch:
         for vehicle in sorted(self._protected & before.keys() & after.keys()):
             here = before[vehicle], after[vehicle]
             p, q = here[0].position, here[1].position
-            track = self._tracks.setdefault(vehicle, [p])
-            track.append(q)
-            for bound in zones_of(self._mission, after[vehicle].time_ms):
+            track = self._tracks.setdefault(vehicle, [(here[0].time_ms, p)])
+            track.append((here[1].time_ms, q))
+            for bound in judged_zones(self._mission, after[vehicle].time_ms):
                 if not bound.binds(before[vehicle].time_ms):
                     continue
                 zone, last = bound.zone, len(track) - 1
                 fence = self._fences.setdefault((vehicle, zone.id), Fence(last - 1, last))
                 at_once = in_time(bound.since_ms, here[0].time_ms, 0)
-                if not fence.checks and at_once and zone not in self._mission.zones:
+                late = not isinstance(zone, MovingZone) and zone not in self._mission.zones
+                if not fence.checks and at_once and late:
                     came = self._came.get(vehicle, here)
                     fence.appeared = _appeared(came if came[1] == here[0] else here, here[0])
                 fence.last = last
                 fence.checks += 1
-                self._leg(vehicle, (p, q), bound, before[vehicle].time_ms)
+                self._leg(vehicle, here, bound)
             self._came[vehicle] = here
 
-    def _leg(self, vehicle: int, leg: tuple[Position, Position], bound: Bound, at_ms: int) -> None:
-        """Check one flown leg that began at at_ms against a zone."""
+    def _leg(
+        self, vehicle: int, here: tuple[Sample, Sample], bound: Bound[Zone] | Bound[MovingZone]
+    ) -> None:
+        """Check one flown leg against a zone."""
         zone, fence = bound.zone, self._fences[vehicle, bound.zone.id]
-        clear = exact_leg_ok(*leg, zone)
+        leg, at_ms = (here[0].position, here[1].position), here[0].time_ms
+        if isinstance(zone, MovingZone):
+            clear = exact_moving_leg_ok(*leg, (at_ms, here[1].time_ms), zone)
+        else:
+            clear = exact_leg_ok(*leg, zone)
         if clear and fence.broken_ms is not None and fence.left_ms is None:
             fence.left_ms = at_ms
         elif not clear and fence.broken_ms is None:
             fence.broken_ms = at_ms
             late, first = fence.appeared is not None, fence.checks == 1
-            fence.over = late and first and not exact_leg_ok(leg[0], leg[0], zone)
+            fence.over = (
+                late and first and isinstance(zone, Zone) and not exact_leg_ok(leg[0], leg[0], zone)
+            )
             self.violations.append(self._fence_verdict(vehicle, zone, fence, so_far=True))
         elif not clear and fence.left_ms is not None and fence.again_ms is None:
             fence.again_ms = at_ms
@@ -147,21 +162,32 @@ class ConstraintWatch:
             vehicle = next(v for v in self._mission.vehicles if v.id == number)
             able = in_wind(vehicle, wind_at(self._mission, at_ms)) or vehicle
             step_ms = self._mission.simulation.step_ms
-            known = zones_of(self._mission, at_ms + step_ms)
-            bound = [one.zone for one in known if one.binds(at_ms)]
+            # of moving zones the regions that are in force
+            bound = known_at(self._mission, at_ms).zones
             fence.could = avoidable(fence.appeared, able, zone, bound, step_ms / 1000)
         return fence.could
 
     def _fence_verdict(
-        self, vehicle: int, zone: Zone, fence: Fence, unseen: str = "", so_far: bool = False
+        self,
+        vehicle: int,
+        zone: Zone | MovingZone,
+        fence: Fence,
+        unseen: str = "",
+        so_far: bool = False,
     ) -> Verdict:
         broken = fence.broken_ms is not None
-        distance = distance_m(self._tracks[vehicle][fence.first : fence.last + 1], zone)
+        track = self._tracks[vehicle][fence.first : fence.last + 1]
         note = f"{fence.checks} flown legs"
+        if isinstance(zone, MovingZone):
+            distance = distance_m([seen(p, at, zone) for at, p in track], standing(zone))
+            note, kernels = f"{note}, where the zone was then", moving_deciding(zone)
+        else:
+            distance, kernels = distance_m([p for _, p in track], zone), deciding(zone)
         outcome, evidence = Outcome.HOLDS, None
         if broken:
             note, outcome = fence.words(zone.kind, so_far), Outcome.VIOLATED
-            if fence.appeared is not None and not fence.over and not so_far:
+            late = fence.appeared is not None and not fence.over
+            if late and not so_far and isinstance(zone, Zone):
                 could, evidence = self._could_keep(vehicle, zone, fence)
                 note = f"{note}; {could}"
         elif unseen:
@@ -179,7 +205,7 @@ class ConstraintWatch:
             checks=fence.checks,
             method="leg_ok: locate, meets_boundary",
             evidence=evidence,
-            kernels=deciding(zone),
+            kernels=kernels,
         )
 
     def verdicts(self, seen: Watched, ending: Ending) -> list[Verdict]:
@@ -193,7 +219,7 @@ class ConstraintWatch:
         ]
 
     def _zones(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
-        for zone, since_ms, until_ms in zones_of(self._mission, seen.end_ms):
+        for zone, since_ms, until_ms in judged_zones(self._mission, seen.end_ms):
             held_ms = seen.end_ms if until_ms is None else min(until_ms, seen.end_ms)
             for vehicle in sorted(self._protected):
                 fence = self._fences.get((vehicle, zone.id))

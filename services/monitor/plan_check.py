@@ -18,7 +18,7 @@ from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok, m
 from cratous.services.monitor.relations import branch_rows, by_term, is_choice, is_part
 from cratous.spec.algebra.meaning import branches, tasks
 from cratous.spec.constraint_rows import AFTER_END
-from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.mission import Mission, Position, SweptZone, Zone
 from cratous.spec.mission.asked import asked, term_of
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission.plan import Plan, PlanItem, in_part_of
@@ -112,7 +112,7 @@ def _length_m(path: Path) -> float:
     return math.fsum(math.dist(p[:2], q[:2]) for p, q in pairwise(path))
 
 
-def _ways(start: Position, chain: tuple[PlanItem, ...]) -> list[tuple[PlanItem, Path, Path]]:
+def ways_of(start: Position, chain: tuple[PlanItem, ...]) -> list[tuple[PlanItem, Path, Path]]:
     """Each item with its transit and its path, joined to the aircraft's previous position.
 
     A gap in the plan becomes a leg like any other: it takes time and has to respect the zones.
@@ -138,7 +138,7 @@ def _chains(mission: Mission, plan: Plan) -> Iterator[Verdict]:
         if not chain:
             continue
         faults = []
-        for item, transit, path in _ways(vehicle.position, chain):
+        for item, transit, path in ways_of(vehicle.position, chain):
             for way, begin_ms, end_ms in (
                 (transit, item.depart_ms, item.arrive_ms),
                 (path, item.start_ms, item.end_ms),
@@ -199,16 +199,19 @@ def _circle(item: PlanItem) -> Path:
 
 def _zones(mission: Mission, plan: Plan) -> Iterator[Verdict]:
     for zone in mission.zones:
+        name = f"zone: {zone.kind.value} {zone.id}"
+        # the zone itself is somewhere else later: `moving_plan`
+        name += ", region at the start" if isinstance(zone, SweptZone) else ""
         for vehicle in mission.vehicles:
             ways: list[Path] = []
-            for item, transit, path in _ways(vehicle.position, plan.chain(vehicle.id)):
+            for item, transit, path in ways_of(vehicle.position, plan.chain(vehicle.id)):
                 ways += [transit, _circle(item), path]
             ways = [way for way in ways if way]
             if ways:
-                yield _zone_verdict(zone, vehicle.id, ways)
+                yield _zone_verdict(name, zone, vehicle.id, ways)
 
 
-def _zone_verdict(zone: Zone, vehicle_id: int, ways: list[Path]) -> Verdict:
+def _zone_verdict(name: str, zone: Zone, vehicle_id: int, ways: list[Path]) -> Verdict:
     checks, bad = 0, ""
     for way in ways:
         for p, q in zip(way, way[1:] or way, strict=False):
@@ -217,7 +220,7 @@ def _zone_verdict(zone: Zone, vehicle_id: int, ways: list[Path]) -> Verdict:
                 bad = f"leg ({p.north_m:.1f}, {p.east_m:.1f}) to ({q.north_m:.1f}, {q.east_m:.1f})"
     distance = min(distance_m(way, zone) for way in ways)
     return _verdict(
-        f"zone: {zone.kind.value} {zone.id}, planned route of vehicle {vehicle_id}",
+        f"{name}, planned route of vehicle {vehicle_id}",
         not bad,
         bad or f"{checks} legs",
         "leg_ok: locate, meets_boundary",

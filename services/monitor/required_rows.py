@@ -13,11 +13,11 @@ from typing import NamedTuple
 from cratous.services.mission.landing import on_failure_of
 from cratous.services.mission.merging import merging_of
 from cratous.services.mission.take_off import grounded
-from cratous.services.mission.zone_times import zones_of
+from cratous.services.mission.zone_times import judged_zones
 from cratous.services.monitor.observation import Span, in_the_air
 from cratous.services.monitor.plan_check import WHOLE
 from cratous.services.monitor.relations import first_choices
-from cratous.spec.mission import Mission, Zone
+from cratous.spec.mission import Mission, MovingZone, Zone
 from cratous.spec.mission.asked import asked
 from cratous.spec.mission.changes import asked_by
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
@@ -56,7 +56,7 @@ def watched(mission: Mission, end_ms: int, done: Set[int], accepted: Set[int]) -
     return Watched(mission, wanted, asked(wanted, done, accepted), end_ms)
 
 
-def fence_item(zone: Zone, vehicle: int) -> str:
+def fence_item(zone: Zone | MovingZone, vehicle: int) -> str:
     """Name of the row on a zone and a vehicle."""
     return f"zone: {zone.kind.value} {zone.id}, flight of vehicle {vehicle}"
 
@@ -164,7 +164,7 @@ def relation_items(seen: Watched, present: Collection[str]) -> list[str]:
 def promised(seen: Watched, present: Collection[str] = ()) -> Iterator[Row]:
     """Every row that a judged flight must have; present: the G1 items that it has."""
     mission, guarded = seen.mission, [v.id for v in seen.mission.vehicles if v.protected]
-    for bound in zones_of(mission, seen.end_ms):
+    for bound in judged_zones(mission, seen.end_ms):
         yield from (Row("G1", fence_item(bound.zone, vehicle), (vehicle,)) for vehicle in guarded)
     yield Row("G1", CHOICE)
     yield from (Row("G1", item) for item in relation_items(seen, present))

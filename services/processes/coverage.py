@@ -18,6 +18,7 @@ from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.mission.landing import on_failure_of
 from cratous.services.mission.merging import merging_of
+from cratous.services.mission.moving_zones import moving_zones
 from cratous.services.mission.take_off import grounded
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import FaultySimulation, Mission, TaskKind
@@ -75,6 +76,8 @@ def refuse_for_amase(mission: Mission) -> None:
 
 def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, str]]:
     """Field, whether it is unsupported, what it requests, and what is supported."""
+    moves = bool(moving_zones(mission))
+    yield "zones", moves, "a zone moves, which no message of UxAS says", "zones that stand"
     alone = not mission.instances
     yield "vehicles", alone, "no vehicle has an ICAROUS instance", "a protected vehicle"
     changes = mission.changes

@@ -22,6 +22,10 @@ from cratous.spec.mission.resolution import Resolution as Resolution
 from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.simulation import FaultySimulation as FaultySimulation
 from cratous.spec.mission.simulation import Simulation as Simulation
+from cratous.spec.mission.zones import MovingZone as MovingZone
+from cratous.spec.mission.zones import SweptZone as SweptZone
+from cratous.spec.mission.zones import Zone as Zone
+from cratous.spec.mission.zones import ZoneKind as ZoneKind
 
 
 class Position(NamedTuple):
@@ -170,28 +174,6 @@ class Task:
     pattern: Pattern | None = None
     extent_m: float = 0.0
     priority: int = 0
-
-
-class ZoneKind(StrEnum):
-    KEEP_IN = "keep_in"
-    KEEP_OUT = "keep_out"
-
-
-@dataclass(frozen=True)
-class Zone:
-    """A polygon in the horizontal plane, between floor and ceiling (MSL), for all vehicles.
-
-    vertices: (north, east) [m], simple, at least three, either orientation, the first not repeated at the end. A
-    keep-out contains its own boundary, a keep-in does not. padding_m widens a keep-out and narrows a keep-in.
-    """
-
-    id: int
-    kind: ZoneKind
-    vertices: tuple[tuple[float, float], ...]
-    floor_m: float
-    ceiling_m: float
-    padding_m: float = 0.0
-    label: str = ""
 
 
 @dataclass(frozen=True)

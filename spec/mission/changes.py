@@ -9,7 +9,7 @@ from cratous.spec import algebra
 from cratous.spec.algebra import ALTERNATIVE, Atom, Term
 from cratous.spec.algebra.meaning import tasks
 from cratous.spec.algebra.partial import after_choices
-from cratous.spec.mission import Change, Mission
+from cratous.spec.mission import Change, Mission, SweptZone, Zone
 
 VEHICLE_LOST, VEHICLE_JOINS = "vehicle_lost", "vehicle_joins"
 TASK_ADDED, TASK_REMOVED = "task_added", "task_removed"
@@ -49,6 +49,8 @@ class HoldCommand(Change):
 
 def words(change: Change) -> str:
     """A change in words."""
+    if isinstance(change.zone, SweptZone):
+        return f"moving zone {change.zone.id} has moved on"
     if change.kind == ZONE and change.zone is not None:
         kind = change.zone.kind.value.replace("_", "-")
         label = f" ({change.zone.label})" if change.zone.label else ""
@@ -103,10 +105,27 @@ def known_at(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission
     known = _without_tasks(mission, _gone(mission, now_ms).keys() - set(done))
     return replace(
         known,
-        zones=tuple(z for z in (*mission.zones, *appeared) if z.id not in ended),
+        zones=tuple(z for z in in_force(mission.zones, appeared) if z.id not in ended),
         vehicles=tuple(v for v in mission.vehicles if v.id not in away),
         changes=(),
     )
+
+
+def is_next(zone: Zone, new: Zone) -> bool:
+    """Whether the second is a later region of the moving zone of the first."""
+    return isinstance(zone, SweptZone) and isinstance(new, SweptZone) and zone.id == new.id
+
+
+def in_force(zones: Iterable[Zone], new: Iterable[Zone]) -> tuple[Zone, ...]:
+    """Zones with new ones added; the region of a moving zone takes the place of its previous one."""
+    found = list(zones)
+    for zone in new:
+        at = next((k for k, z in enumerate(found) if is_next(z, zone)), None)
+        if at is None:
+            found.append(zone)
+        else:
+            found[at] = zone
+    return tuple(found)
 
 
 def asked_by(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission:

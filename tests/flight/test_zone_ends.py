@@ -20,7 +20,7 @@ from cratous.judge import judge
 from cratous.services.cli.job import Settings, run_mission
 from cratous.services.flight.replan_triggers import undone_by
 from cratous.services.loading import load
-from cratous.services.monitor.required_rows import zones_of
+from cratous.services.mission.zone_times import zones_of
 from cratous.services.pipeline.plan import make_plan
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Change, Mission, Position, Simulation, TaskKind, Zone, ZoneKind

@@ -1,0 +1,105 @@
+"""A plan against moving zones, at the times that it plans: a vehicle is taken to fly each way at a uniform speed.
+
+The flight does not follow these rows: it is planned anew as a zone moves on. A way is checked leg by leg, a wait as a disc
+that stands, against where the zone is then (kernels as for flown legs).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import accumulate, pairwise
+
+from cratous.services.mission.moving_zones import (
+    exact_moving_leg_ok,
+    moving_deciding,
+    moving_disc_ok,
+    moving_zones,
+)
+from cratous.services.monitor.plan_check import Path, ways_of
+from cratous.spec.mission import Mission, MovingZone, Position
+from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
+from cratous.spec.mission.plan import Plan, PlanItem
+
+
+def check_in_time(mission: Mission, plan: Plan) -> list[Verdict]:
+    """One verdict for each moving zone and planned vehicle: unknown where the plan, as it is, would meet the zone."""
+    found = []
+    for zone in moving_zones(mission):
+        for vehicle in mission.vehicles:
+            chain = plan.chain(vehicle.id)
+            if chain:
+                found.append(_verdict(zone, vehicle.id, ways_of(vehicle.position, chain)))
+    return found
+
+
+def meeting_lines(mission: Mission, plan: Plan) -> list[str]:
+    """A line for each planned vehicle that would meet a moving zone if it flew the plan as it is."""
+    checks = check_in_time(mission, plan)
+    return [f"{c.item}: {c.note}" for c in checks if c.outcome is not Outcome.HOLDS]
+
+
+def _verdict(zone: MovingZone, vehicle: int, ways: list[tuple[PlanItem, Path, Path]]) -> Verdict:
+    checks, met_ms = 0, None
+    for item, transit, path in ways:
+        parts = [*_legs(transit, item.depart_ms, item.arrive_ms), *_wait(item)]
+        for leg, times_ms, radius_m in (*parts, *_legs(path, item.start_ms, item.end_ms)):
+            over = zone.until_ms is not None and times_ms[0] >= zone.until_ms
+            if over or times_ms[1] < zone.from_ms:
+                continue
+            checks += 1
+            if radius_m is None:
+                clear = exact_moving_leg_ok(*leg, times_ms, zone)
+            else:
+                clear = moving_disc_ok(leg[0], radius_m, times_ms, zone)
+            if not clear and met_ms is None:
+                met_ms = times_ms[0]
+    note = f"{checks} parts of legs and waits, where the zone is then"
+    if met_ms is not None:
+        note = (
+            f"the plan as it is meets the zone from {met_ms / 1000:.1f} s on; "
+            "in flight it is made anew as the zone moves on"
+        )
+    return Verdict(
+        "G1",
+        f"in time: moving zone {zone.id}, planned route of vehicle {vehicle}",
+        Outcome.HOLDS if met_ms is None else Outcome.UNKNOWN,
+        Kind.EXACT,
+        note,
+        time_ms=met_ms,
+        vehicles=(vehicle,),
+        checks=checks,
+        method="leg_ok, in the frame of the zone",
+        kernels=moving_deciding(zone),
+    )
+
+
+PART_MS = 1000
+"""Longest part of a leg that is checked at once [ms]."""
+Leg = tuple[Position, Position]
+Part = tuple[Leg, tuple[int, int], float | None]
+"""A leg, or with a radius a disc that stands, and from when until when it is flown [ms]."""
+
+
+def _legs(way: Path, begin_ms: int, end_ms: int) -> Iterator[Part]:
+    """The legs of a way at a uniform speed in parts of PART_MS, each from the millisecond before to that after."""
+    lengths = [math.dist(p[:2], q[:2]) for p, q in pairwise(way)]
+    whole = math.fsum(lengths) or 1.0
+    shares = [0.0, *(gone / whole for gone in accumulate(lengths))]
+    for (p, q), (first, last) in zip(pairwise(way), pairwise(shares), strict=True):
+        from_ms, to_ms = (begin_ms + share * (end_ms - begin_ms) for share in (first, last))
+        count = max(1, math.ceil((to_ms - from_ms) / PART_MS))
+        places = [_along(p, q, k / count) for k in range(count + 1)]
+        for k, part in enumerate(pairwise(places)):
+            times = (from_ms + (to_ms - from_ms) * j / count for j in (k, k + 1))
+            yield part, (math.floor(next(times)), math.ceil(next(times))), None
+
+
+def _along(p: Position, q: Position, share: float) -> Position:
+    return Position(*(a + share * (b - a) for a, b in zip(p, q, strict=True)))
+
+
+def _wait(item: PlanItem) -> Iterator[Part]:
+    if item.hold is not None and item.wait_ms > 0:
+        at = Position(item.hold.north_m, item.hold.east_m, item.hold.alt_m)
+        yield (at, at), (item.arrive_ms, item.arrive_ms + item.wait_ms), item.hold.radius_m
