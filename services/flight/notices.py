@@ -11,6 +11,7 @@ from cratous.services.flight.commands import SENDERS
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.holding import Change
 from cratous.services.icarous.messages import (
+    Decides,
     Fails,
     Foresees,
     Guides,
@@ -170,7 +171,22 @@ def failure_state(said: Fails) -> Any:
     )
 
 
-def of_instance(said: Foresees | WithoutLink | Fails | TakesOff | Hears | Merges) -> Any:
+def cognition_state(said: Decides) -> Any:
+    """A `CognitionState`: the mode of a vehicle's ICAROUS from now on, and the conditions for it."""
+    conditions = {name.capitalize(): value for name, value in said.seen._asdict().items()}
+    return lmcp.new(
+        "CognitionState",
+        VehicleID=said.vehicle_id,
+        Time=said.now_ms,
+        Mode=said.mode,
+        Resolution=said.resolution,
+        IntruderID=said.intruder_id,
+        Skipped=said.skipped,
+        **conditions,
+    )
+
+
+def of_instance(said: Foresees | WithoutLink | Fails | TakesOff | Hears | Merges | Decides) -> Any:
     """An instance's notice for the record, as a message."""
     match said:
         case Foresees():
@@ -185,6 +201,8 @@ def of_instance(said: Foresees | WithoutLink | Fails | TakesOff | Hears | Merges
             return uxas_heard(said)
         case Merges():
             return merge_state(said)
+        case Decides():
+            return cognition_state(said)
 
 
 def _mode_told(name: str, said: WithoutLink | TakesOff, **more: Any) -> Any:
