@@ -11,17 +11,29 @@ from typing import Any
 import pytest
 from flight_tools import flown, meeting, of_type
 from ground_tools import assert_in_the_guide
+from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME, head_on
 from mission_tools import must_fly
 
 from cratous.bridge import lmcp
 from cratous.core.authority import cognition as kernels
 from cratous.core.authority.cognition import Conditions, decide, resolution
+from cratous.core.authority.gate import Gate
+from cratous.core.authority.link_loss import LOITER
+from cratous.core.avoidance.prediction import Intruder
 from cratous.services.flight import legs
 from cratous.services.icarous import cognition as logic
 from cratous.services.icarous import instance
+from cratous.services.icarous.decided import Decided
+from cratous.services.icarous.foresight import ON_PATH_M
+from cratous.services.icarous.inbox import Told
+from cratous.services.icarous.instance import Instance
+from cratous.services.icarous.lost_link import LostLink
+from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.state import Config, State
 from cratous.services.loading import load
 from cratous.spec.authority import cognition as meant
-from cratous.spec.mission import Position
+from cratous.spec.authority.cycle import AVOID
+from cratous.spec.mission import Daa, Position, Zone, ZoneKind
 
 MISSION = Path(__file__).resolve().parents[1] / "missions" / "hovering_behind.yaml"
 ALL = [Conditions(*seen) for seen in product((False, True), repeat=len(Conditions._fields))]
@@ -93,11 +105,11 @@ def test_without_the_machine_nothing_is_avoided(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_a_mode_that_never_goes_back_keeps_the_vehicle(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(instance, "mode_lets_go", lambda mode: False)
     mission = meeting()
     limit = replace(mission.simulation, limit_ms=60_000)
     back = of_type(met()[1], "AuthorityChange")[-1]
     assert (back.Owner.name, back.Time < limit.limit_ms) == ("UxAS", True)
+    monkeypatch.setattr(instance, "mode_lets_go", lambda mode: False)
     _, log = flown(replace(mission, simulation=limit))
     assert of_type(log, "AuthorityChange")[-1].Owner.name == "ICAROUS"
 
@@ -117,6 +129,56 @@ def test_a_goal_that_is_blocked_is_left_out_by_name(monkeypatch: pytest.MonkeyPa
     assert result.failed[1].startswith("blocked: ")
     assert list(result.ends) == [2]
     assert result.outcome == "failed"
+
+
+AHEAD = Zone(1, ZoneKind.KEEP_OUT, ((100, -300), (100, 300), (700, 300), (700, -300)), 0.0, 1000.0)
+NARROW = Zone(2, ZoneKind.KEEP_IN, ((-99, -99), (-99, 99), (99, 99), (99, -99)), 0.0, 1000.0)
+ROUTE = tuple(Position(n, 0.0, 300.0) for n in (-100.0, 5000.0))
+CONFIG = Config(1, Daa(VOLUME, 60.0, 1.25), PROJECTION, 500, records=True)
+FREE, OWNED = Gate(0, 0, False), Gate(1, 1, False)
+
+
+def beat(state: State, gate: Gate = FREE, east_m: float = 0.0, *others: Intruder) -> State:
+    """The state after a heartbeat in which the vehicle flies north, so far beside its route."""
+    motion = NORTH._replace(position=Position(0.0, east_m, 300.0))
+    return Instance(CONFIG).handle(state, Sensed(500, motion, ABILITY, others, gate))[0]
+
+
+def told(*zones: Zone) -> State:
+    return State(told=Told(zones=zones, waypoints=ROUTE, next_index=1, heard_ms=500, started=True))
+
+
+def test_under_uxas_the_vehicle_is_off_its_plan_or_not() -> None:
+    assert beat(told()).decided.mode == meant.NOMINAL
+    assert beat(told(), FREE, ON_PATH_M + 1.0).decided.mode == meant.DEVIATION
+    assert beat(State(), FREE, 500.0).decided.mode == meant.NOMINAL  # it has no plan
+
+
+def test_a_zone_is_watched_off_the_plan_and_on_the_way_back() -> None:
+    off = beat(told(AHEAD), FREE, 100.0)
+    assert (off.decided.mode, off.cycle.mode) == (meant.FENCE_CONFLICT, AVOID)
+    on = beat(told(AHEAD), OWNED)
+    assert on.decided.mode == meant.FENCE_CONFLICT
+    assert on.decided.resolution != meant.NONE
+    assert beat(on, OWNED, 0.0, head_on(900.0)).decided.mode == meant.TRAFFIC_CONFLICT
+    assert beat(told(), OWNED).decided.mode == meant.RETURN_TO_PATH
+
+
+def test_without_the_link_a_conflict_is_answered_too() -> None:
+    """Where traffic or a zone leaves no circle that is permitted, that is avoided until one is."""
+    loiter = LostLink(LOITER, 1000, "a circle", lambda *_: ())
+    config = CONFIG._replace(lost_link=loiter)
+
+    def silent(*others: Intruder, zones: tuple[Zone, ...] = ()) -> Decided:
+        state = State(told=Told(zones=zones, waypoints=ROUTE, next_index=1, heard_ms=-9000))
+        here = Sensed(500, NORTH, ABILITY, others, FREE)
+        return Instance(config).handle(state, here)[0].decided
+
+    assert silent().mode == meant.LOST_LINK
+    met = silent(head_on(400.0))
+    assert (met.mode, met.seen.alone, met.seen.fence) == (meant.TRAFFIC_CONFLICT, True, False)
+    shut = silent(zones=(NARROW,))
+    assert (shut.mode, shut.seen.traffic) == (meant.FENCE_CONFLICT, False)
 
 
 def test_the_diagram_in_the_guide_is_the_kernel_s(root: Path) -> None:
