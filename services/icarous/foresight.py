@@ -66,7 +66,7 @@ def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahe
         return with_hold(way, paced, scene, own, TURN_MARGIN, state.beside)
     v = velocity_of(motion.heading_rad, motion.speed_m_s, motion.climb_m_s)
     straight = Piece(0.0, lookahead_s, motion.position, v)
-    return Ahead((straight,), (scene.volume,), off_plan=bool(told.waypoints))
+    return Ahead((straight,), (scene.volume,), off_plan=bool(told.waypoints) and index > 0)
 
 
 def way_back_is_free(
