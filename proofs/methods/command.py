@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from cratous.core.authority.cognition import Conditions
 from cratous.core.authority.cycle import Cycle
 from cratous.core.authority.failure import Asked, Failure, Seen
 from cratous.core.authority.gate import Gate
@@ -11,7 +12,7 @@ from cratous.core.authority.link_end import LinkEnd
 from cratous.core.authority.link_loss import Loss
 from cratous.core.authority.take_off import Departure
 from cratous.proofs.claim import Claim
-from cratous.spec.authority import failure, link_loss, take_off
+from cratous.spec.authority import cognition, failure, link_loss, take_off
 
 
 def any_gate(c: Claim) -> Gate:
@@ -105,3 +106,10 @@ def takes_and_goes_as_defined(
     reason = c.boolean("reason")
     for (kernel, meant), text in ((takes, "why ICAROUS has the vehicle"), (goes, when)):
         c.show(c.same(c.use(kernel, before, reason), c.define(meant, before, reason)), text)
+
+
+def any_conditions(c: Claim) -> tuple[Any, Conditions]:
+    """An arbitrary mode of the decision logic, and arbitrary conditions at a heartbeat."""
+    mode = c.integer("decided")
+    c.premise(c.define(cognition.is_mode, mode))
+    return mode, Conditions(*(c.boolean(f"is_{name}") for name in Conditions._fields))

@@ -281,16 +281,19 @@ def time_view(report: dict[str, Any]) -> dict[str, Any]:
     def x_of(time_ms: float) -> float:
         return round(BAR_LEFT + BAR_WIDTH * min(time_ms / 1000 / end_s, 1.0), 1)
 
-    bars = [
-        {
-            **bar,
-            "x": x_of(bar["from_ms"]),
-            "width": max(round(x_of(bar["to_ms"]) - x_of(bar["from_ms"]), 1), 1.0),
-            "y": rows[bar["vehicle"]] * BAR_ROW,
-        }
-        for bar in flight["bars"]
-        if bar["vehicle"] in rows
-    ]
+    def placed(bars: list[dict[str, Any]]) -> list[dict[str, Any]]:
+        return [
+            {
+                **bar,
+                "x": x_of(bar["from_ms"]),
+                "width": max(round(x_of(bar["to_ms"]) - x_of(bar["from_ms"]), 1), 1.0),
+                "y": rows[bar["vehicle"]] * BAR_ROW,
+            }
+            for bar in bars
+            if bar["vehicle"] in rows
+        ]
+
+    modes = [one for one in flight.get("modes", ()) if one["group"] != "nominal"]
     step = nice_step(end_s / 6)
     return {
         "width": BAR_LEFT + BAR_WIDTH + 30,
@@ -300,7 +303,8 @@ def time_view(report: dict[str, Any]) -> dict[str, Any]:
             {"label": vehicle["label"], "id": vehicle["id"], "y": k * BAR_ROW}
             for k, vehicle in enumerate(vehicles)
         ],
-        "bars": bars,
+        "bars": placed(flight["bars"]),
+        "modes": placed(modes),
         "ticks": [
             {"x": x_of(1000 * k * step), "text": f"{k * step:g} s"}
             for k in range(floor(end_s / step) + 1)

@@ -18,6 +18,7 @@ from cratous import __version__
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.blame import Commands, blame_rows
 from cratous.services.certify.limits import LIMITS, of_states
+from cratous.services.certify.modes import spans
 from cratous.services.certify.running_code import running_code
 from cratous.services.certify.timeline import Flight, FlightReader, bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised, without_ground
@@ -179,6 +180,7 @@ def build_report(
             "bars": bars(flight),
             "takeovers": flight.takeovers,
             **({"alerts": flight.alerts} if flight.alerts else {}),
+            **({"modes": spans(flight.modes, flight.end_ms)} if flight.modes else {}),
             "authority": flight.authority,
             "events": flight.events,
             "changes": flight.changes,

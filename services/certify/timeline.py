@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.services.certify.alerts import TOPIC, AlertReader
+from cratous.services.certify.modes import note
 from cratous.services.logs.entry import Entry
 from cratous.services.logs.log import Row
 from cratous.spec.errors import BadInput
@@ -45,6 +46,8 @@ class Flight:
     in_phase: list[dict[str, Any]] = field(default_factory=list)
     """Further reports on a task that did not change its phase."""
     takeovers: list[dict[str, Any]] = field(default_factory=list)
+    modes: list[dict[str, Any]] = field(default_factory=list)
+    """Changes of the decision logic, for `services.certify.modes.spans`."""
     alerts: list[dict[str, Any]] = field(default_factory=list)
     """Detect-and-avoid alerts: ownship, intruder, time span, highest level, least time to violation."""
     events: list[dict[str, Any]] = field(default_factory=list)
@@ -122,6 +125,8 @@ class FlightReader:
             _authority(flight, body, self._owners, self.last, self._open_takeover)
         elif short == "TaskProgress":
             _progress(flight, body)
+        elif short == "CognitionState":
+            note(flight.modes, body)
         else:
             _event(flight, short, body)
 

@@ -74,6 +74,7 @@ from cratous.services.icarous import state as icarous
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import (
     Checks,
+    Decides,
     Fails,
     Foresees,
     FromInstance,
@@ -154,8 +155,7 @@ class Flight:
         dt_s, sites = simulation.step_ms / 1000, sites_of(mission)
         self.executive = Executive(Config(mission, projection, instances))
         self.executive_state = executive_state.first_state(mission, plan)
-        live = mission.live_planning
-        alone = mission.link_loss is not None
+        live, alone = mission.live_planning, mission.link_loss is not None
         self.link, self.link_state = (
             UxasEnd(projection, live, alone),
             link_peers.State(),
@@ -367,7 +367,14 @@ class Flight:
                     self._instance(vid, given._replace(hand=hand))
                 case Offers(vid) | Uncertified(vid):
                     self._vehicle(vid, Held(self.now_ms, answer))
-                case Foresees(vid) | Checks(vid) | TakesOff(vid) | Hears(vid) | Merges(vid):
+                case (
+                    Foresees(vid)
+                    | Checks(vid)
+                    | TakesOff(vid)
+                    | Hears(vid)
+                    | Merges(vid)
+                    | Decides(vid)
+                ):
                     self._publish(of_instance(answer), f"icarous/{vid}")
                 case WithoutLink(vid) | Fails(vid):
                     self._publish(of_instance(answer), f"icarous/{vid}")

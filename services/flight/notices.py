@@ -12,6 +12,7 @@ from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.holding import Change
 from cratous.services.icarous.messages import (
     Checks,
+    Decides,
     Fails,
     Foresees,
     Guides,
@@ -190,7 +191,24 @@ def failure_check(said: Checks) -> Any:
     )
 
 
-def of_instance(said: Foresees | WithoutLink | Fails | Checks | TakesOff | Hears | Merges) -> Any:
+def cognition_state(said: Decides) -> Any:
+    """A `CognitionState`: the mode of a vehicle's ICAROUS from now on, and the conditions for it."""
+    conditions = {name.capitalize(): value for name, value in said.seen._asdict().items()}
+    return lmcp.new(
+        "CognitionState",
+        VehicleID=said.vehicle_id,
+        Time=said.now_ms,
+        Mode=said.mode,
+        Resolution=said.resolution,
+        IntruderID=said.intruder_id,
+        Skipped=said.skipped,
+        **conditions,
+    )
+
+
+def of_instance(
+    said: Foresees | WithoutLink | Fails | Checks | TakesOff | Hears | Merges | Decides,
+) -> Any:
     """An instance's notice for the record, as a message."""
     match said:
         case Foresees():
@@ -207,6 +225,8 @@ def of_instance(said: Foresees | WithoutLink | Fails | Checks | TakesOff | Hears
             return uxas_heard(said)
         case Merges():
             return merge_state(said)
+        case Decides():
+            return cognition_state(said)
 
 
 def _mode_told(name: str, said: WithoutLink | TakesOff, **more: Any) -> Any:

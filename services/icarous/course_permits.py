@@ -11,7 +11,7 @@ anything after it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from cratous.core.avoidance.drift import Off
 from cratous.core.avoidance.manoeuvre import Motion, way_along
@@ -23,6 +23,7 @@ from cratous.core.kernel import Vec2
 from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
 from cratous.core.routing.polylines import circle_points
 from cratous.services.icarous.course import Course
+from cratous.services.icarous.forbidden import Forbidden
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.permits import way_is_clear
 from cratous.services.icarous.route_end import TRACKING_S
@@ -51,6 +52,20 @@ def refused_soon(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s:
     aside_m = sensed.motion.speed_m_s * beat_s / 2
     found = (*_against_zones(pieces, scene, aside_m), *_against_others(pieces, sensed, scene, daa))
     return next(iter(found), "")
+
+
+def forbidden(
+    found: Iterable[Course], sensed: Sensed, scene: Scene, daa: Daa, beat_s: float
+) -> Forbidden:
+    """Whether traffic alone, and zones alone, forbid each of these courses within the look-ahead; both if they do so
+    only together.
+    """
+    found, unseen = tuple(found), sensed._replace(intruders=())
+    open_air = scene._replace(zones=())
+    traffic = all(refused_soon(one, sensed, open_air, daa, beat_s) for one in found)
+    zone = all(refused_soon(one, unseen, scene, daa, beat_s) for one in found)
+    together = not (traffic or zone)
+    return Forbidden(traffic or together, zone or together)
 
 
 def _speed_m_s(piece: Piece) -> float:

@@ -8,6 +8,7 @@ from cratous.core.avoidance.manoeuvre import velocity_of, way_along
 from cratous.core.avoidance.prediction import Piece, buffered
 from cratous.core.avoidance.resolution import Scene, first_zone_s
 from cratous.core.avoidance.way_ahead import near_line, there_within
+from cratous.services.icarous.forbidden import BY_ZONE, FREE, Forbidden, by_traffic
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.pace import at_pace, pace_of
 from cratous.services.icarous.permits import keeps_volume, way_is_clear
@@ -64,7 +65,8 @@ def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahe
         way = way_along(motion, (), horizon_s(scene), pace=pace)
         return with_hold(way, paced, scene, own, TURN_MARGIN, state.beside)
     v = velocity_of(motion.heading_rad, motion.speed_m_s, motion.climb_m_s)
-    return Ahead((Piece(0.0, lookahead_s, motion.position, v),), (scene.volume,))
+    straight = Piece(0.0, lookahead_s, motion.position, v)
+    return Ahead((straight,), (scene.volume,), off_plan=bool(told.waypoints) and index > 0)
 
 
 def way_back_is_free(
@@ -77,11 +79,19 @@ def way_back_is_free(
     in_turn: intruders in a turn, whose straight-line prediction beyond the look-ahead is meaningless.
     lasting: the way must be permitted to its end against every intruder seen, and meet no zone.
     """
+    return way_back_forbidden(config, state, sensed, in_turn, lasting).free
+
+
+def way_back_forbidden(
+    config: Config, state: State, sensed: Sensed, in_turn: frozenset[int], lasting: bool = False
+) -> Forbidden:
+    """What forbids the way back, if it is not free (`way_back_is_free`)."""
     if not state.told.waypoints:
         scene = scene_of(config, state, sensed)
         ahead = predicted(config, state, sensed, scene)
-        return not any(ahead.meets(other) for other in scene.intruders)
-    return way_is_free(config, state, sensed, in_turn, points_back(state, sensed), lasting)
+        met = next((other.id for other in scene.intruders if ahead.meets(other)), None)
+        return FREE if met is None else by_traffic(met)
+    return way_forbidden(config, state, sensed, in_turn, points_back(state, sensed), lasting)
 
 
 def points_back(state: State, sensed: Sensed) -> tuple[Position, ...]:
@@ -99,24 +109,39 @@ def way_is_free(
     lasting: bool = False,
 ) -> bool:
     """`way_back_is_free` for the way from here by flyable turns onto points[0], and along the rest of points."""
+    return way_forbidden(config, state, sensed, in_turn, points, lasting).free
+
+
+def way_forbidden(
+    config: Config,
+    state: State,
+    sensed: Sensed,
+    in_turn: frozenset[int],
+    points: tuple[Position, ...],
+    lasting: bool = False,
+) -> Forbidden:
+    """What forbids that way, if it is not free (`way_is_free`): what is found first."""
     scene = scene_of(config, state, sensed)
     pace = pace_of(state.told, sensed)
     flown = at_pace(sensed, pace)
     radius_m = TURN_MARGIN * flown.motion.speed_m_s / flown.ability.turn_rate_rad_s
     now, horizon = sensed.motion, horizon_s(scene)
-    met = state.avoided - in_turn
-    asked = [o for o in scene.intruders if o.id in met or (lasting and o.id not in in_turn)]
+    avoided = state.avoided - in_turn
+    asked = [o for o in scene.intruders if o.id in avoided or (lasting and o.id not in in_turn)]
     for way in ways_back(now, radius_m, points, horizon, pace):
         ahead = with_hold(way, flown, scene, config.daa.well_clear, TURN_MARGIN)
-        if any(ahead.meets(other) for other in scene.intruders):
-            return False
+        met = next((other.id for other in scene.intruders if ahead.meets(other)), None)
+        if met is not None:
+            return by_traffic(met)
         if first_zone_s(ahead.pieces, scene.zones, 5.0) is not None:
-            return False
+            return BY_ZONE
     whole = [one.pieces for one in ways_back(now, radius_m, points, math.inf, pace)]
     if lasting:
         # if a zone lies across it UxAS flies another way than this one
         if any(first_zone_s(pieces, scene.zones, 5.0) is not None for pieces in whole):
-            return False
+            return BY_ZONE
         if not all(keeps_volume(pieces, o, config.daa) for pieces in whole for o in asked):
-            return False
-    return all(way_is_clear(pieces, o, config.daa) for pieces in whole for o in asked)
+            return by_traffic()
+    if all(way_is_clear(pieces, o, config.daa) for pieces in whole for o in asked):
+        return FREE
+    return by_traffic()

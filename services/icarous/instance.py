@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from cratous.bridge.text_protocol import Heartbeat, SetMode, SetVelocity
+from cratous.core.authority.cognition import mode_lets_go, mode_takes
 from cratous.core.authority.cycle import (
     Cycled,
     cycle_begun,
@@ -30,14 +31,23 @@ from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.merging.stages import merging_lets_go, merging_takes
-from cratous.services.icarous import link_loss, merging, messages, permits, route_requests, take_off
+from cratous.services.icarous import (
+    cognition,
+    link_loss,
+    merging,
+    messages,
+    permits,
+    route_requests,
+    take_off,
+)
 from cratous.services.icarous.failing import noted
+from cratous.services.icarous.forbidden import BY_ZONE, FREE, by_traffic
 from cratous.services.icarous.foresight import (
     looked_s,
     points_back,
     predicted,
     scene_of,
-    way_back_is_free,
+    way_back_forbidden,
     way_is_free,
 )
 from cratous.services.icarous.geofence_monitor import zone_ahead_s
@@ -45,7 +55,7 @@ from cratous.services.icarous.inbox import beaten, hear
 from cratous.services.icarous.offers import Refused, certified
 from cratous.services.icarous.other_vehicles import to_their_ends, with_ways
 from cratous.services.icarous.pace import change_ms, pace_of
-from cratous.services.icarous.proposal import describe, manoeuvre
+from cratous.services.icarous.proposal import describe
 from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS, onto
 from cratous.services.icarous.route_end import TURN_MARGIN
 from cratous.services.icarous.state import IDLE, Config, State
@@ -67,6 +77,7 @@ REASONS = {
     OFFER: "the way back is free",
     WITHDRAW: "offer withdrawn: the way back is no longer free",
 }
+ZONE = "zone"
 NO_LINK = "link: UxAS is not heard"
 FAILED = "failure: declared"
 TAKES_OFF = "take-off: it is on the ground"
@@ -143,22 +154,16 @@ class Instance:
         state, lost = link_loss.heartbeat(self.config, state, sensed)
         state, merges = merging.heartbeat(self.config, state, sensed)
         if watches:
-            state, out = self._watch(state, sensed, in_turn)
+            after, out = self._watch(state, sensed, in_turn)
         else:
-            state, out = self._fly(state, sensed, in_turn)
+            after, out = self._fly(state, sensed, in_turn)
+        state, decides = cognition.told(self.config, after, state, sensed)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
+        sign = messages.Up(self.config.vehicle_id, beat)
         if self.config.on_failure is not None:
             state = replace(state, failing=noted(state.failing, sensed, out))
         state, hears = self._hears(state, sensed.now_ms)
-        return state, (
-            *fails,
-            *up,
-            *lost,
-            *merges,
-            *hears,
-            *out,
-            messages.Up(self.config.vehicle_id, beat),
-        )
+        return state, (*fails, *up, *lost, *merges, *hears, *decides, *out, sign)
 
     def _hears(self, state: State, now_ms: int) -> tuple[State, tuple[messages.Hears, ...]]:
         """A change of whether UxAS is heard, for the record; not reported here if the mission sets a lost-link
@@ -192,21 +197,28 @@ class Instance:
         """
         if take_off.departs(self.config, state):
             departure = take_off.rising(self.config, state).departure
-            takes = departure_takes(departure, False)
+            state = cognition.decided(self.config, state, sensed, FREE)
+            takes = departure_takes(departure, mode_takes(state.decided.mode))
             cycled = cycle_watched(state.cycle, takes, sensed.now_ms, RELAPSE_MS)
             return self._by_itself(state, sensed, in_turn, cycled, TAKES_OFF)
-        state, conflict = self._foreseen(state, sensed, in_turn)
+        state, conflict, off_plan = self._foreseen(state, sensed, in_turn)
         state, said = self._guided(state, sensed, bool(state.threats))
-        takes = loss_takes(state.no_link.loss, conflict is not None)
+        alone = state.no_link.loss.mode != LINKED
+        forbidden = FREE
+        if conflict is not None and not alone:
+            forbidden = BY_ZONE if conflict.why == ZONE else by_traffic(conflict.intruder_id)
+        elif merging_takes(state.merging.stage, alone):
+            forbidden = cognition.course_forbidden(self.config, state, sensed)
+        state = cognition.decided(self.config, state, sensed, forbidden, off_plan)
+        takes = loss_takes(state.no_link.loss, mode_takes(state.decided.mode))
         takes = merging_takes(state.merging.stage, takes)
         cycled = cycle_watched(state.cycle, takes, sensed.now_ms, RELAPSE_MS)
         if cycled.act == NOTHING:
             return replace(state, cycle=cycled.cycle), said
         sensed = sensed._replace(intruders=to_their_ends(state.ways, sensed.intruders))
-        if conflict is None or state.no_link.loss.mode != LINKED:
-            linked = state.no_link.loss.mode == LINKED
+        if conflict is None or alone:
             why = FAILED if state.failing.declared else NO_LINK
-            why = merging.reason(state.merging) if linked else why
+            why = why if alone else merging.reason(state.merging)
             state, out = self._by_itself(state, sensed, in_turn, cycled, why)
             return state, (*said, *out)
         vid, first_s = self.config.vehicle_id, conflict.first_s
@@ -215,7 +227,7 @@ class Instance:
             reason += permits.told_why(state, conflict.intruder_id)
             state = permits.taken_over(state, conflict.intruder_id)
         state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
-        state, choice = manoeuvre(self.config, state, sensed, in_turn, False)
+        state, choice = cognition.flown(self.config, state, sensed, in_turn)
         foresees = messages.Foresees(
             vid, sensed.now_ms, conflict.intruder_id, first_s, describe(choice)
         )
@@ -234,26 +246,16 @@ class Instance:
     ) -> Step:
         """Take over because UxAS is not heard, to take off, or to merge."""
         state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
-        state, choice = self._flown_by_itself(state, sensed, in_turn)
+        state, choice = cognition.flown(self.config, state, sensed, in_turn)
         wish = messages.Wish(self.config.vehicle_id, cycled.act, why, 0)
         offer = self._offer(state, sensed, choice)
         return state, (wish, *offer, *self._commands(sensed, choice, cycled.act))
 
-    def _flown_by_itself(
-        self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]
-    ) -> tuple[State, Choice]:
-        """The manoeuvre of a take-off, of flight without the link, or over a merge fix."""
-        if take_off.departs(self.config, state):
-            return take_off.flown(self.config, state, sensed)
-        if state.no_link.loss.mode == LINKED:
-            return merging.flown(self.config, state, sensed, in_turn)
-        return link_loss.flown(self.config, state, sensed, in_turn)
-
     def _foreseen(
         self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]
-    ) -> tuple[State, Conflict | None]:
+    ) -> tuple[State, Conflict | None, bool]:
         """Predict losses of well clear and re-check the permits. Returns the conflict to act on, None if
-        there is none.
+        there is none, and whether the vehicle is off its plan.
         """
         scene = scene_of(self.config, state, sensed)
         ahead = predicted(self.config, state, sensed, scene)
@@ -265,34 +267,34 @@ class Instance:
         state = permits.looked(self.config, replace(state, threats=found), sensed, ahead)
         urgent = most_urgent(permits.acting(state, found))
         if urgent is not None:
-            return state, Conflict("traffic", urgent.intruder_id, urgent.first_violation_s)
+            told = Conflict("traffic", urgent.intruder_id, urgent.first_violation_s)
+            return state, told, ahead.off_plan
         if len(ahead.pieces) == 1 and not ahead.holds:
             zone_s = zone_ahead_s(sensed.motion, sensed.ability, ahead.pieces, state.told.zones)
             if zone_s is not None:
-                return state, Conflict("zone", 0, zone_s)
-        return state, None
+                return state, Conflict(ZONE, 0, zone_s), ahead.off_plan
+        return state, None, ahead.off_plan
 
     def _fly(self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and check whether the way back is free."""
         state, guides = self._guided(state, sensed, not (sensed.landed or sensed.on_ground))
         departure = take_off.rising(self.config, state).departure
-        departs = take_off.departs(self.config, state)
-        lost = state.no_link.loss.mode != LINKED
-        alone = departs or merging_takes(state.merging.stage, lost)
-        lasting = state.search.waits(sensed.now_ms)
-        free = not alone and way_back_is_free(self.config, state, sensed, in_turn, lasting)
+        config, departs = self.config, take_off.departs(self.config, state)
         proposed, asked = None, list[messages.FromInstance]()
-        if not alone:
-            state, proposed, asked = self._proposed(state, sensed, in_turn, free)
+        if cognition.by_itself(config, state):
+            forbidden = cognition.course_forbidden(config, state, sensed)
+        else:
+            lasting = state.search.waits(sensed.now_ms)
+            forbidden = way_back_forbidden(config, state, sensed, in_turn, lasting)
+            state, proposed, asked = self._proposed(state, sensed, in_turn, forbidden.free)
+            forbidden = forbidden if proposed is None else FREE
+        state = cognition.decided(config, state, sensed, forbidden)
         heard_ms, before = state.told.heard_ms, state.held
-        free = loss_lets_go(state.no_link.loss, free or proposed is not None)
+        free = loss_lets_go(state.no_link.loss, mode_lets_go(state.decided.mode))
         free = merging_lets_go(state.merging.stage, departure_lets_go(departure, free))
         cycled = cycle_flown(state.cycle, free, heard_ms, sensed.now_ms, LINK_LOST_MS, PERSIST_MS)
         state = replace(state, cycle=cycled.cycle)
-        if alone:
-            state, choice = self._flown_by_itself(state, sensed, in_turn)
-        else:
-            state, choice = manoeuvre(self.config, state, sensed, in_turn, free)
+        state, choice = cognition.flown(config, state, sensed, in_turn)
         out: list[messages.FromInstance] = [*guides]
         vid, text = self.config.vehicle_id, describe(choice)
         if cycled.act != NOTHING:
@@ -300,6 +302,7 @@ class Instance:
             reason = f"{UXAS_WAY} (request {proposed})" if of_uxas else REASONS[cycled.act]
             out.append(messages.Wish(vid, cycled.act, reason, 0))
         # along a course the heading changes at each heartbeat: not recorded
+        lost = state.no_link.loss.mode != LINKED
         course = state.no_link.course if lost else state.merging.course
         on_course = departs or course is not None
         changed = not on_course and (before is None or describe(before) != text)

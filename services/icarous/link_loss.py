@@ -35,6 +35,8 @@ from cratous.services.icarous import course as courses
 from cratous.services.icarous import failing
 from cratous.services.icarous.course import Course
 from cratous.services.icarous.course_permits import TAKEN, refused, refused_soon
+from cratous.services.icarous.course_permits import forbidden as forbidden_courses
+from cratous.services.icarous.forbidden import FREE, Forbidden
 from cratous.services.icarous.foresight import ON_PATH_M, scene_of
 from cratous.services.icarous.landing import approaches, in_order
 from cratous.services.icarous.lost_link import LostLink, NoLink
@@ -160,21 +162,33 @@ def _words(act: int, plan: LostLink, tried: Tried, course: Course | None, silent
     return "UxAS is heard again"
 
 
-def flown(
-    config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]
-) -> tuple[State, Choice]:
-    """The manoeuvre to fly without the link: along the course, or by avoidance if no course is permitted; on
-    the ground none.
-    """
-    plan = config.alone(state.failing.failure)
-    course, goal = state.no_link.course, plan.goal if plan else None
+def flown(config: Config, state: State, sensed: Sensed) -> tuple[State, Choice]:
+    """The manoeuvre to fly without the link, along the permitted course; on the ground none."""
+    course = state.no_link.course
     if state.no_link.loss.mode == LANDED:
         stands = Choice("heading", sensed.motion.heading_rad, 0.0, 0.0, 0.0, True, None)
         return replace(state, held=None, search=IDLE), stands
-    if course is not None:
-        choice = courses.steered(course, sensed, _beat_s(config))
-        return replace(state, held=None, search=IDLE), choice
-    told = state.told
+    assert course is not None, "it flies by itself on a permitted course"
+    choice = courses.steered(course, sensed, _beat_s(config))
+    return replace(state, held=None, search=IDLE), choice
+
+
+def forbidden(config: Config, state: State, sensed: Sensed) -> Forbidden:
+    """What forbids every course, the circles here being the last ones tried, if none is permitted."""
+    if state.no_link.course is not None:
+        return FREE
+    motion, scene = sensed.motion, scene_of(config, state, sensed)
+    here = Pose(*motion.position, motion.heading_rad)
+    circles = courses.courses(here, motion, courses.radius_m(sensed), None)
+    return forbidden_courses(circles, sensed, scene, config.daa, _beat_s(config))
+
+
+def avoiding(
+    config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]
+) -> tuple[State, Choice]:
+    """The manoeuvre to fly without the link where no course is permitted."""
+    plan = config.alone(state.failing.failure)
+    told, goal = state.told, plan.goal if plan else None
     # with RETURN it makes for that place, otherwise it has no goal
     points = () if goal is None else (goal,)
     alone = replace(told, waypoints=points, next_index=0, resume=None)

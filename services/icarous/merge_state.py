@@ -36,7 +36,8 @@ class Merging(NamedTuple):
 
     stage: numbered as in `core.merging.stages`; merger: this member's state of the agreement on slots; way: the
     vehicle's route, None if none was announced; course: the course being flown, None if none is permitted or UxAS
-    flies; slot: at the fix [ms], None for none; told: stage, term, leader, request and slot as recorded last.
+    flies; slot: at the fix [ms], None for none; told: stage, term, leader, request and slot as recorded last; tried: the
+    courses that were tried, if none is permitted.
     """
 
     stage: int = AWAY
@@ -45,3 +46,4 @@ class Merging(NamedTuple):
     course: Course | None = None
     slot: int | None = None
     told: tuple[int, int, int, int, int] = (AWAY, 0, 0, 0, -1)
+    tried: tuple[Course, ...] = ()

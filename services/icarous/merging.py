@@ -22,13 +22,14 @@ from cratous.core.tasks.rendezvous import pace
 from cratous.services.icarous import course as courses
 from cratous.services.icarous import merger as talk
 from cratous.services.icarous.course import Course
+from cratous.services.icarous.course_permits import forbidden as forbidden_courses
 from cratous.services.icarous.course_permits import refused_soon
+from cratous.services.icarous.forbidden import FREE, Forbidden
 from cratous.services.icarous.foresight import ON_PATH_M, scene_of
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.merge_state import Fix, Followed, Merging
 from cratous.services.icarous.merger import Merger, Wish
 from cratous.services.icarous.messages import Merges, Sensed, Talk, Tells
-from cratous.services.icarous.proposal import manoeuvre
 from cratous.services.icarous.return_to_path import flat, onto, rejoin
 from cratous.services.icarous.state import IDLE, Config, State
 from cratous.services.mission.merging import TOLERANCE_MS
@@ -95,12 +96,13 @@ def heartbeat(
         before.stage, ahead.near, ahead.inside, slot is not None, early, ahead.entered
     )
     going = replace(state, merging=before._replace(way=way))
-    course = _flown(config, going, sensed, stage, course, arrival)
+    tried = _candidates(config, going, sensed, stage, course, arrival)
+    course = _permitted(config, state, sensed, tried)
     announced = state.no_link.course if failed else course
     flies = _flies(announced, sensed, config.daa.lookahead_s)
     merger, said = talk.beat(fix.talks, merger, flies, now_ms)
     told = _told(fix, stage, merger, slot)
-    after = Merging(stage, merger, way, course, slot, told)
+    after = Merging(stage, merger, way, course, slot, told, () if course else tried)
     state = replace(state, merging=after)
     if stage not in (IN_SLOT, HOLDING) and before.stage in (IN_SLOT, HOLDING):
         state = replace(state, held=None, search=IDLE)
@@ -150,15 +152,20 @@ def reason(merging: Merging) -> str:
     return ""
 
 
-def flown(
-    config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]
-) -> tuple[State, Choice]:
-    """The manoeuvre to fly now: along the course, or one of avoidance if none is permitted."""
+def flown(config: Config, state: State, sensed: Sensed) -> tuple[State, Choice]:
+    """The manoeuvre to fly now, along the permitted course."""
     course = state.merging.course
-    if course is not None:
-        choice = courses.steered(course, sensed, config.heartbeat_ms / 1000)
-        return replace(state, held=None, search=IDLE), choice
-    return manoeuvre(config, state, sensed, in_turn, False)
+    assert course is not None, "it merges on a permitted course"
+    choice = courses.steered(course, sensed, config.heartbeat_ms / 1000)
+    return replace(state, held=None, search=IDLE), choice
+
+
+def forbidden(config: Config, state: State, sensed: Sensed) -> Forbidden:
+    """What forbids every course of the present stage, if none is permitted."""
+    if state.merging.course is not None:
+        return FREE
+    scene, beat_s = scene_of(config, state, sensed), config.heartbeat_ms / 1000
+    return forbidden_courses(state.merging.tried, sensed, scene, config.daa, beat_s)
 
 
 def _told(fix: Fix, stage: int, merger: Merger, slot: int | None) -> tuple[int, int, int, int, int]:
@@ -243,26 +250,32 @@ def _arrival(
     return pace(ahead.left_m, left_s, slowest, fastest, TOLERANCE_MS / 1000)
 
 
-def _flown(
+def _candidates(
     config: Config,
     state: State,
     sensed: Sensed,
     stage: int,
     going: Course | None,
     arrival: Arrival | None,
+) -> tuple[Course, ...]:
+    """The courses of a stage, the preferred first: the present one continued, or new ones from here."""
+    if stage == IN_SLOT:
+        return _onward(config, state, sensed, going, arrival)
+    if stage != HOLDING:
+        return ()
+    motion, wide_m = sensed.motion, courses.radius_m(sensed)
+    here = Pose(*motion.position, motion.heading_rad)
+    circles = courses.courses(here, motion, wide_m, None)
+    return circles if going is None or going.track is not None else (going, *circles)
+
+
+def _permitted(
+    config: Config, state: State, sensed: Sensed, found: tuple[Course, ...]
 ) -> Course | None:
-    """The permitted course of a stage: the present one continued, or a new one from here; None if there is none."""
-    if stage not in (IN_SLOT, HOLDING):
+    """The first course that is permitted within the look-ahead; None if there is none."""
+    if not found:
         return None
     scene, beat_s = scene_of(config, state, sensed), config.heartbeat_ms / 1000
-    found = _onward(config, state, sensed, going, arrival) if stage == IN_SLOT else ()
-    if stage == HOLDING:
-        here, wide_m = (
-            Pose(*sensed.motion.position, sensed.motion.heading_rad),
-            courses.radius_m(sensed),
-        )
-        circles = courses.courses(here, sensed.motion, wide_m, None)
-        found = circles if going is None or going.track is not None else (going, *circles)
     return next((c for c in found if not refused_soon(c, sensed, scene, config.daa, beat_s)), None)
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from cratous.bridge.text_protocol import Message
+from cratous.core.authority.cognition import Conditions
 from cratous.core.authority.failure import Seen
 from cratous.core.authority.failure_due import Due
 from cratous.core.authority.gate import Gate
@@ -159,6 +160,21 @@ class Merges(NamedTuple):
     reason: str
 
 
+class Decides(NamedTuple):
+    """To the record: the mode from now on, and how a conflict is avoided, as codes of `spec.authority.cognition`;
+    intruder_id: an aircraft that is avoided, 0 if none is known; skipped: number of waypoints left out since ICAROUS took
+    the vehicle; seen: the conditions.
+    """
+
+    vehicle_id: int
+    now_ms: int
+    mode: int
+    resolution: int
+    intruder_id: int
+    skipped: int
+    seen: Conditions
+
+
 class Tells(NamedTuple):
     """To the other vehicles that merge at the same fix, over the direct links."""
 
@@ -225,6 +241,7 @@ FromInstance = (
     | Checks
     | TakesOff
     | Merges
+    | Decides
     | Tells
     | Offers
     | Uncertified

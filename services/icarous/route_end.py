@@ -56,8 +56,8 @@ class Ahead(NamedTuple):
     """The predicted route, the volumes that it must keep clear, and the candidate holds at its end.
 
     volumes: each is checked along the route; holds: one that is clear of everybody, else all of them; held: volume whose
-    cylinder the holds must keep clear; rise_m:
-    vertical deviation in a hold [m]; beside: result of the zone check for the holds.
+    cylinder the holds must keep clear; rise_m: vertical deviation in a hold [m]; beside: result of the zone check for the
+    holds; off_plan: the vehicle is off its plan, and predicted straight on.
     """
 
     pieces: tuple[Piece, ...]
@@ -66,6 +66,7 @@ class Ahead(NamedTuple):
     held: WellClear | None = None
     rise_m: float = 0.0
     beside: Beside | None = None
+    off_plan: bool = False
 
     def first_s(self, other: Intruder) -> float | None:
         """When the route or a hold at its end first violates a volume of an intruder [s]; None if never."""

@@ -14,6 +14,7 @@ from cratous.core.avoidance.resolution import Choice
 from cratous.core.permit.encounter import Encounter
 from cratous.services.icarous.band_history import Bands
 from cratous.services.icarous.course import Course
+from cratous.services.icarous.decided import Decided
 from cratous.services.icarous.failing import Failing
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.lost_link import LostLink, NoLink, OnFailure
@@ -118,7 +119,7 @@ class State:
     state without the link; pace_ms: until when UxAS may be accelerating after a handback [ms]; unheard: UxAS
     was not heard at the last heartbeat; rising: state of the take-off; beside: last zone check for the final
     hold; merging: state of the merge; failing: a declared failure, and what led to it; timed: the way in time that is
-    flown, None for none.
+    flown, None for none; decided: the mode, and why.
     """
 
     cycle: Cycle = START
@@ -141,6 +142,7 @@ class State:
     merging: Merging = field(default_factory=Merging)
     failing: Failing = field(default_factory=Failing)
     timed: Timed | None = None
+    decided: Decided = field(default_factory=Decided)
 
     def paces(self, now_ms: int) -> bool:
         """Whether UxAS may still be accelerating the vehicle to the announced speed after a handback."""

@@ -295,7 +295,7 @@ def test_which_way_is_predicted(
     )
     if pieces < 0:  # straight on, and no hold
         straight = Piece(0.0, 60.0, now.position, velocity_of(0.0, 22.0, 0.0))
-        assert found == Ahead((straight,), (WIDE,))
+        assert found == Ahead((straight,), (WIDE,), off_plan=next_index > 0)
     else:
         assert len(found.pieces) == pieces
         assert len(found.holds) == 2

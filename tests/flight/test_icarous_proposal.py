@@ -14,6 +14,7 @@ from cratous.core.authority.gate import ICAROUS, Gate
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Choice, resolve
 from cratous.services.icarous import instance, proposal
+from cratous.services.icarous.forbidden import FREE, Forbidden
 from cratous.services.icarous.foresight import scene_of, way_back_is_free
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.instance import Instance
@@ -199,7 +200,12 @@ def test_control_waits_for_the_way_that_was_looked_for_and_no_longer(
 ) -> None:
     """Until its instant has come a way that is free for the look-ahead alone is not taken; of_uxas: one that UxAS's
     planner proposes."""
-    monkeypatch.setattr(instance, "way_back_is_free", lambda *args: not (of_uxas or args[4]))
+    shut = Forbidden(True, False)
+
+    def forbidden(*args: Any) -> Forbidden:
+        return shut if of_uxas or args[4] else FREE
+
+    monkeypatch.setattr(instance, "way_back_forbidden", forbidden)
     monkeypatch.setattr(instance, "way_is_free", lambda *args: not args[5])
     turn = Choice("heading", 1.0, 22.0, 0.0, 0.0, True, None)
     cycle = Cycle(AVOID, 0, False, 0, True, 0)

@@ -60,6 +60,29 @@ class DeclaredFailure(LmcpEnum):
     Surprised = 3
     Ended = 4
 
+class CognitionMode(LmcpEnum):
+    Nominal = 0
+    Deviation = 1
+    ReturnToPath = 2
+    NextWaypoint = 3
+    Merging = 4
+    LostLink = 5
+    Failed = 6
+    Ditch = 7
+    FenceConflict = 8
+    TrafficConflict = 9
+    TakeOff = 10
+    Land = 11
+    Landed = 12
+
+class ConflictResolution(LmcpEnum):
+    NoResolution = 0
+    Turn = 1
+    Altitude = 2
+    Speed = 3
+    Combined = 4
+    LeastBad = 5
+
 class Verdict(LmcpEnum):
     Holds = 0
     Violated = 1
@@ -668,4 +691,66 @@ class FailureCheck(LmcpObject):
         Expiry: int = ...,
         Failure: _cratous.DeclaredFailure | str = ...,
         DueBy: int = ...,
+    ) -> None: ...
+
+class CognitionState(LmcpObject):
+    """cratous.CognitionState: CRATOUS type 24."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Mode: _cratous.CognitionMode
+    """CRATOUS/CognitionMode, default Nominal."""
+    Resolution: _cratous.ConflictResolution
+    """CRATOUS/ConflictResolution, default NoResolution."""
+    IntruderID: int
+    """int64, default 0."""
+    Skipped: int
+    """int64, default 0."""
+    Landed: bool
+    """bool, default false."""
+    Descends: bool
+    """bool, default false."""
+    Departs: bool
+    """bool, default false."""
+    Traffic: bool
+    """bool, default false."""
+    Fence: bool
+    """bool, default false."""
+    Lands: bool
+    """bool, default false."""
+    Failed: bool
+    """bool, default false."""
+    Alone: bool
+    """bool, default false."""
+    Merges: bool
+    """bool, default false."""
+    Has: bool
+    """bool, default false."""
+    Skips: bool
+    """bool, default false."""
+    Deviates: bool
+    """bool, default false."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Mode: _cratous.CognitionMode | str = ...,
+        Resolution: _cratous.ConflictResolution | str = ...,
+        IntruderID: int = ...,
+        Skipped: int = ...,
+        Landed: bool = ...,
+        Descends: bool = ...,
+        Departs: bool = ...,
+        Traffic: bool = ...,
+        Fence: bool = ...,
+        Lands: bool = ...,
+        Failed: bool = ...,
+        Alone: bool = ...,
+        Merges: bool = ...,
+        Has: bool = ...,
+        Skips: bool = ...,
+        Deviates: bool = ...,
     ) -> None: ...
