@@ -88,6 +88,14 @@ def mode_avoids(mode: int) -> bool:
     return mode == 8 or mode == 9
 
 
+@kernel(implements="authority.cognition.is_turn", nonnegative=("least",))
+def turns_by(off: float, least: float) -> bool:
+    """True iff a manoeuvre is a turn. off: its heading less the present one, in the shorter sense [rad]; least: an angle
+    that still counts as straight on [rad], >= 0.
+    """
+    return off > least or off < -least
+
+
 @kernel(implements="authority.cognition.is_resolution")
 def resolution(mode: int, turns: bool, climbs: bool, paces: bool, clear: bool) -> int:
     """How a conflict is avoided: 0 there is none, 1 by a turn, 2 by a change of altitude, 3 of speed, 4 by more than one

@@ -24,6 +24,7 @@ from cratous.core.authority.cognition import (
     mode_avoids,
     mode_lets_go,
     resolution,
+    turns_by,
 )
 from cratous.core.authority.link_loss import FINAL, LINKED
 from cratous.core.authority.link_loss import LAND as TO_LAND
@@ -41,7 +42,7 @@ from cratous.spec.records import replace
 
 BY_ITSELF = (LOST_LINK, FAILED, DITCH, LAND, LANDED)
 """Modes in which a course without the link, or after a declared failure, is flown."""
-TURNED_RAD = math.radians(1.0)
+STRAIGHT_RAD = math.radians(1.0)
 """A manoeuvre within this angle of the present heading is no turn."""
 
 
@@ -125,7 +126,7 @@ def told(
     if held is not None:
         off_rad = math.remainder(held.heading_rad - sensed.motion.heading_rad, math.tau)
         climbs, paces = held.kind == "altitude", held.kind == "speed"
-        turns = held.kind == "heading" or abs(off_rad) > TURNED_RAD
+        turns = held.kind == "heading" or turns_by(off_rad, STRAIGHT_RAD)
     clear = held is not None and held.clear
     now = now._replace(resolution=resolution(now.mode, turns, climbs, paces, clear))
     state, was = replace(state, decided=now), before.decided

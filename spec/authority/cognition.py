@@ -104,6 +104,11 @@ def may_go_back(mode: int) -> bool:
     return is_back(mode)
 
 
+def is_turn(off: float, least: float) -> bool:
+    """The heading of a manoeuvre is farther from the present one than this angle. off: to the right, or left of it."""
+    return abs(off) > least
+
+
 def is_resolution(
     mode: int, turns: bool, climbs: bool, paces: bool, clear: bool, found: int
 ) -> bool:

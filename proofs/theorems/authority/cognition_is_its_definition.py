@@ -1,6 +1,6 @@
 """The mode of the decision logic is the gravest one for which there is a reason, and no other; the same conditions do not
-change it again; and how a conflict is avoided, whether ICAROUS has to have the vehicle, and whether it may go back are
-what their definitions say."""
+change it again; and whether a manoeuvre is a turn, how a conflict is avoided by one that changes direction, altitude or
+speed, whether ICAROUS has to have the vehicle, and whether it may go back are what their definitions say."""
 
 from cratous.core.authority.cognition import (
     decide,
@@ -8,6 +8,7 @@ from cratous.core.authority.cognition import (
     mode_lets_go,
     mode_takes,
     resolution,
+    turns_by,
 )
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.command import any_conditions
@@ -27,6 +28,10 @@ def claim(c: Claim) -> None:
     c.show(c.same(c.use(mode_takes, after), c.define(flies, after)), "why ICAROUS has it")
     goes = c.define(cognition.may_go_back, after)
     c.show(c.same(c.use(mode_lets_go, after), goes), "when it may go back")
+    off, least = c.real("off"), c.real("least")
+    c.premise(least >= 0)
+    a_turn = c.define(cognition.is_turn, off, least)
+    c.show(c.same(c.use(turns_by, off, least), a_turn), "a turn")
     flown = tuple(c.boolean(name) for name in ("turns", "climbs", "paces", "clear"))
     c.premise(c.any_of(*flown[:3]))
     found, another = c.use(resolution, after, *flown), c.integer("another")
