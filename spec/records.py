@@ -29,10 +29,13 @@ else:
     def replace(record: Any, /, **changes: Any) -> Any:
         """The record with some fields changed, as by `dataclasses.replace`; raises TypeError for unknown names."""
         kind = type(record)
-        before = getattr(record, "__dict__", ())
-        if _plain_fields(kind) == len(before):
+        count = _plain_fields(kind)
+        if count >= 0:
             made = object.__new__(kind)
-            made.__dict__.update(before, **changes)
-            if len(made.__dict__) == len(before):
-                return made
+            fields = made.__dict__
+            fields.update(record.__dict__)
+            if len(fields) == count:  # nothing but its fields is kept in it
+                fields.update(changes)
+                if len(fields) == count:
+                    return made
         return dataclasses.replace(record, **changes)
