@@ -8,6 +8,7 @@ from cratous.services.flight.chain import Phase
 from cratous.services.flight.commands import gated, path_command
 from cratous.services.flight.deadlines import opens
 from cratous.services.flight.executive_state import Config, Out, State
+from cratous.services.flight.merge_routes import comes_before
 from cratous.services.flight.messages import Flown, Look, Route, Say
 from cratous.services.flight.remaining_path import points_ahead, points_left
 from cratous.services.flight.sensing import looks
@@ -52,8 +53,11 @@ def route(state: State, vehicle_id: int, out: Out) -> State:
     ahead_m = chain.vehicle.max_speed_m_s * (state.mission.daa.lookahead_s + AHEAD_S)
     loss = state.mission.link_loss
     whole = loss is not None and loss.choice is WithoutLink.FINISH
-    if whole or merges(state.mission, vehicle_id) is not None:
+    merging = merges(state.mission, vehicle_id)
+    if whole or merging is not None:
         ahead_m = WHOLE_M
+    if merging is not None and comes_before(merging, chain):
+        ahead_m = 0.0  # for its slot it would be flown over its task
     speed = chain.item.speed_m_s if chain.item and not chain.holds else chain.speed_m_s
     out.append(Route(vehicle_id, points_ahead(chain, opens_ms, ahead_m), speed, chain.s_m))
     return state.put(chain)

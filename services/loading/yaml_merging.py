@@ -9,6 +9,7 @@ from typing import Any
 from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.kernel import Vec2
 from cratous.core.routing.dubins import turn_radius_m
+from cratous.core.routing.polylines import Track
 from cratous.core.tasks.rendezvous import spares_a_lap
 from cratous.services.loading.checks import Finding, as_errors
 from cratous.services.loading.coordinates import Places
@@ -16,7 +17,7 @@ from cratous.services.loading.document import Document
 from cratous.services.loading.problems import refuse
 from cratous.services.mission.merging import merging_of
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import GroundedVehicle, Mission, Vehicle
+from cratous.spec.mission import GroundedVehicle, Mission, Position, Vehicle
 from cratous.spec.mission.merging import DirectFaults, Merging, Silence
 
 SEPARATION_S = 20.0
@@ -27,6 +28,8 @@ BESIDE = {
 }
 ORIGIN = Vec2(0.0, 0.0)
 FOR_GOOD_MS = 86_400_000
+PASSED_M = 1.0
+"""The way to a task passes the fix if it is nearest to it at least this far before its end [m]."""
 CIRCLES = 3.0
 """Least distance between the rims of the schedule and entry zones, in turn radii: a hold begun at the one stays out of
 the other.
@@ -100,6 +103,7 @@ def merging_problems(mission: Mission) -> Iterator[Finding]:
         if one.vehicle not in merging.vehicles:
             item = f"merging.faults.silent[{k}].vehicle"
             yield Finding(item, "it does not merge", "one of merging.vehicles", str(one.vehicle))
+    yield from _before_the_fix(merging, mission)
     radii = merging.coordination_m, merging.schedule_m, merging.entry_m
     if not radii[0] > radii[1] > radii[2]:
         got = ", ".join(f"{one:g}" for one in radii)
@@ -107,12 +111,50 @@ def merging_problems(mission: Mission) -> Iterator[Finding]:
         yield Finding("merging", "zones that do not lie in each other", expected, got)
 
 
-def _no_room(merging: Merging, vehicle: Vehicle, mission: Mission, item: str) -> Iterator[Finding]:
+def _before_the_fix(merging: Merging, mission: Mission) -> Iterator[Finding]:
+    """Tasks that begin at the fix, or so near before it, as seen from the start of each vehicle that may fly them, that
+    no circle there stays out of the entry zone: the way to them passes no fix, and after them no slot is waited for.
+    """
+    fix = Vec2(merging.north_m, merging.east_m)
+    for k, task in enumerate(mission.tasks):
+        able = [v for v in mission.vehicles if not task.eligible or v.id in task.eligible]
+        if not able or any(v.id not in merging.vehicles for v in able):
+            continue
+        begins = task.start_point or task.points[0]
+        place = Vec2(begins.north_m, begins.east_m)
+        least_m = max(merging.entry_m + CIRCLES * _circle_m(vehicle) for vehicle in able)
+        if not near_line(place, fix, fix, least_m):
+            continue
+        if not any(_passed(merging, vehicle.position, begins) for vehicle in able):
+            yield Finding(
+                f"tasks[{k}].points",
+                f"it begins at the fix {merging.name}, or too near before it to wait for a slot after it",
+                f"at least {least_m:.0f} m before {merging.name}, or beyond it",
+                f"{math.dist(place, fix):.0f} m before it",
+            )
+
+
+def _circle_m(vehicle: Vehicle) -> float:
+    """Radius of a circle that it holds in [m]."""
     # loaded only if vehicles merge
     from cratous.services.icarous.route_end import TURN_MARGIN
 
+    return TURN_MARGIN * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
+
+
+def _passed(merging: Merging, start: Position, place: Position) -> bool:
+    """Whether the straight way to a place has passed the fix: within entry_m of it, nearest before its end."""
+    way, fix = Track((start, place), 0.0), Vec2(merging.north_m, merging.east_m)
+    near_m = way.nearest(Position(*fix, 0.0), 0.0, way.length_m).s_m
+    there, left_m = way.at(near_m), way.length_m - near_m
+    if not near_line(Vec2(there.north_m, there.east_m), fix, fix, merging.entry_m):
+        return False
+    return not near_line(Vec2(left_m, 0.0), ORIGIN, ORIGIN, PASSED_M)
+
+
+def _no_room(merging: Merging, vehicle: Vehicle, mission: Mission, item: str) -> Iterator[Finding]:
     slow, fast = vehicle.min_speed_m_s, vehicle.max_speed_m_s
-    radius_m = TURN_MARGIN * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
+    radius_m = _circle_m(vehicle)
     least_m = merging.entry_m + CIRCLES * radius_m
     if not _within(least_m, merging.schedule_m):
         expected = (

@@ -254,6 +254,51 @@ def test_what_does_not_make_sense_is_refused(
     assert what in str(caught.value)
 
 
+def with_first_task(path: Path, north_m: float, **fields: Any) -> Path:
+    """The mission, in which vehicle 1 first has a task at a place on its way along the north axis."""
+    data = yaml.safe_load(path.read_text())
+    place = {"north_m": north_m, "east_m": 0, "alt_m": 300}
+    first = {"id": 9, "kind": "must_fly", "eligible": [1], "points": [place]}
+    data["tasks"].append({**first, **fields})
+    data["relations"] = "|(.(p9 p1) p2)"
+    path.write_text(yaml.safe_dump(data))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("north_m", "fields", "got"),
+    [
+        (0, {}, "0 m before it"),
+        (-200, {}, "200 m before it"),
+        (-450, {}, "450 m before it"),
+        (-450, {"eligible": [1, 2]}, "450 m before it"),
+        (-700, {}, ""),
+        (200, {}, ""),
+    ],
+)
+def test_a_task_at_the_fix_or_too_near_before_it_is_refused(
+    root: Path, tmp_path: Path, north_m: float, fields: dict[str, Any], got: str
+) -> None:
+    path = with_first_task(mission_file(root, tmp_path, 2), north_m, **fields)
+    if not got:
+        load(path)
+        return
+    with pytest.raises(BadInput) as caught:
+        load(path)
+    said = str(caught.value)
+    assert "tasks[2].points: it begins at the fix gate, or too near before it" in said
+    assert got in said
+    assert "or beyond it" in said
+
+
+@pytest.mark.long
+def test_a_task_before_the_fix_is_flown_before_a_slot_is_taken(root: Path, tmp_path: Path) -> None:
+    path = with_first_task(mission_file(root, tmp_path, 2), -1500)
+    flight = flown(path)
+    assert_merged(flight, tmp_path)
+    assert "InSlot" in flight.stages(1)
+
+
 def test_vehicles_that_cannot_wait_or_that_nobody_flies_are_refused(
     root: Path, tmp_path: Path
 ) -> None:
