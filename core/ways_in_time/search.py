@@ -25,7 +25,7 @@ FOUND, EXHAUSTED, SPENT, FULL, OVERDUE, REFUSED = 0, 1, 2, 3, 4, 5
 """How a search ends: a way; all states of the grid looked at; the checks, or the states, of the budget used; ended by
 `overdue`; the whole way refused by the final check.
 """
-ASIDE, SHARE = (1.05, 3.0), (0.6, 1.0)
+ASIDE, SHARE = (1.05, 3.0), (0.3, 1.0)
 """Factors of the rest of a way in the order of search, and up to which share of the budget each is used: near the
 shortest first, then whatever leads on.
 """

@@ -34,15 +34,15 @@ from cratous.spec.mission import Position
 
 BUDGET_S = 0.5
 """Time for one search [s]."""
-CHECKS_PER_S = 30_000
+CHECKS_PER_S = 50_000
 """Checks that a slow core makes in a second; so many times the budget are made at most."""
 STATES = 60_000
 """Greatest number of states in memory; each takes less than a kilobyte."""
-BINS = 200
+BINS = 60
 """A horizon has so many instants that are told apart,"""
-LEAST_BIN_S = 1.0
+LEAST_BIN_S = 2.0
 """but they are no closer to each other than this [s]."""
-LATER = 3.0
+LATER = 2.0
 """The default horizon is the time of a straight flight at the slowest speed, this many times,"""
 MORE_S = 120.0
 """and this much more [s]."""
@@ -131,18 +131,9 @@ def _grid(asked: Asked, scene: Scene) -> Grid:
         raise ValueError(f"a speed that is not positive: {min(*speeds, now.speed_m_s)} m/s")
     lateral = now.speed_m_s * ability.turn_rate_rad_s / TURN_MARGIN
     craft = Craft(speeds, lateral, ability.acceleration_m_s2, ability.max_climb_m_s)
-    keep_m = max([scene.volume.dthr_m, *(v.dthr_m for v in scene.volumes)])
-    places = places_of(
-        now.position,
-        asked.goal,
-        speeds[0],
-        craft.radius_m(speeds[0]),
-        scene.zones,
-        scene.intruders,
-        keep_m=keep_m,
-        margin_m=scene.margin_m,
-        layers_m=[alt for alt in asked.layers_m if alt >= ability.floor_m],
-    )
+    start, speed = now.position, speeds[0]
+    layers = [alt for alt in asked.layers_m if alt >= ability.floor_m]
+    places = places_of(start, asked.goal, speed, craft.radius_m(speed), scene, layers)
     return Grid(now, places, craft, Checks(scene))
 
 
