@@ -27,7 +27,6 @@ from cratous.core.ways_in_time.search import (
     Found,
     Search,
 )
-from cratous.services.icarous.route_end import TURN_MARGIN
 from cratous.services.ways_in_time.excluded import excluded
 from cratous.services.ways_in_time.places import places_of
 from cratous.spec.mission import Position
@@ -57,7 +56,8 @@ class Outcome(StrEnum):
 
 
 class Asked(NamedTuple):
-    """now: present motion; goal: where to; ability: of the airframe, at the present speed; horizon_s: by when the goal
+    """now: present motion; goal: where to; ability: of the airframe, with the
+    turn rate that may be used at the present speed; horizon_s: by when the goal
     must be reached, None for `LATER` straight flights; layers_m: altitudes that may be used beside those of start and
     goal [m MSL]; speeds_m_s: to be flown, the preferred first; () for the present, least and greatest speed.
     """
@@ -129,7 +129,7 @@ def _grid(asked: Asked, scene: Scene) -> Grid:
     speeds = asked.speeds_m_s or tuple(dict.fromkeys((present, least, most)))
     if min(*speeds, now.speed_m_s) <= 0:
         raise ValueError(f"a speed that is not positive: {min(*speeds, now.speed_m_s)} m/s")
-    lateral = now.speed_m_s * ability.turn_rate_rad_s / TURN_MARGIN
+    lateral = now.speed_m_s * ability.turn_rate_rad_s
     craft = Craft(speeds, lateral, ability.acceleration_m_s2, ability.max_climb_m_s)
     start, speed = now.position, speeds[0]
     layers = [alt for alt in asked.layers_m if alt >= ability.floor_m]
