@@ -38,7 +38,9 @@ RIGHT, LEFT, HERE = -1, -2, -3
 START, END = (HERE, HERE), (GOAL, GOAL)
 SIDES = ((RIGHT, 1), (LEFT, -1))
 DEGREE = 8
-"""Each place is joined with this many of the nearest places in sight, and with the goal if that is in sight."""
+"""Each place is joined with this many of the nearest places in sight, and with the goal if that is in sight; without
+traffic, where instants make no difference, with all in sight.
+"""
 FIRST = 16
 """A first turn leads to so many places over which the way is shortest, and to so many of the nearest."""
 NEAREST_M = 1.0
@@ -97,7 +99,7 @@ class Grid:
             p, found = self.places[i], list[int]()
             order = sorted(range(len(self.places)), key=lambda j: (_far(p, self.places[j]), j))
             for j in order:
-                enough = len(found) >= DEGREE
+                enough = bool(self.checks.scene.intruders) and len(found) >= DEGREE
                 if (enough and j != GOAL) or not self._joined(i, j):
                     continue
                 found.append(j)

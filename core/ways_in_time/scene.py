@@ -25,8 +25,8 @@ NEAR_S = 1.0
 """Positions of intruders are bounded from those at whole multiples of this time [s]."""
 ROUNDING_M = 1.0
 """Added to each bound that skips a call [m]."""
-KERNEL = 5
-"""A check by exact kernels costs as much as so many others."""
+KERNEL, LEG = 5, 2
+"""A check by exact kernels costs as much as so many others: of a segment against a tube, of a leg against a zone."""
 
 
 class Scene(NamedTuple):
@@ -85,7 +85,7 @@ class Checks:
             )
             near = [self._keep_outs[k] for k in np.flatnonzero(meets_box)]
         for zone in (*near, *self._keep_ins):
-            self.calls += KERNEL
+            self.calls += LEG
             if not leg_keeps(p, q, zone, margin_m, self.scene.rise_m):
                 return False
         return True

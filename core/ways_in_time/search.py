@@ -25,9 +25,9 @@ FOUND, EXHAUSTED, SPENT, FULL, OVERDUE, REFUSED = 0, 1, 2, 3, 4, 5
 """How a search ends: a way; all states of the grid looked at; the checks, or the states, of the budget used; ended by
 `overdue`; the whole way refused by the final check.
 """
-ASIDE, SHARE = (1.05, 3.0), (0.6, 1.0)
+ASIDE, SHARE = (1.05, 3.0), (0.3, 1.0)
 """Factors of the rest of a way in the order of search, and up to which share of the budget each is used: near the
-shortest first, then whatever leads on.
+shortest first (the shortest itself without traffic), then whatever leads on.
 """
 FROWNED = 1.02
 """Factor of time at another speed than the preferred one."""
@@ -85,7 +85,7 @@ class Search:
         self._timed = bool(self.grid.checks.scene.intruders)
         found = self._ended(SPENT)
         for aside, share in zip(ASIDE, SHARE, strict=True):
-            self._aside = aside
+            self._aside = aside if self._timed or share == 1.0 else 1.0
             found = self._searched(math.floor(share * self.budget.calls))
             if found.end != SPENT:
                 break

@@ -20,6 +20,7 @@ from cratous.core.permit.tubes import disc_within
 from cratous.core.ways_in_time.scene import Checks, Scene
 from cratous.services.icarous.deviation import keeps_to
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.route_end import TURN_MARGIN
 from cratous.services.ways_in_time.asking import Asked, Outcome, way_in_time
 from cratous.spec.mission import Daa, Position
 
@@ -70,6 +71,7 @@ def proposed(
 ) -> Timed | None:
     """A permitted way to the first of the points, or else to the last; None if none is found."""
     motion, ability = sensed.motion, sensed.ability
+    ability = ability._replace(turn_rate_rad_s=ability.turn_rate_rad_s / TURN_MARGIN)
     seen = scene_in_time(scene, daa, sensed)
     past_m = 2 * scene.volume.zthr_m
     layers = (motion.position.alt_m + past_m, motion.position.alt_m - past_m)

@@ -17,6 +17,7 @@ from cratous.core.ways_in_time.scene import Scene
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.permits import keeps_volume, way_is_clear
 from cratous.services.icarous.return_to_path import flat
+from cratous.services.icarous.route_end import TURN_MARGIN
 from cratous.services.ways_in_time.asking import Asked, Outcome, way_in_time
 from cratous.spec.mission import Daa, Position, Zone
 from cratous.spec.mission.plan import Pose
@@ -60,7 +61,7 @@ def in_time(
     """The legs of a way in time from a start, the first with no length, and the reason if there is none."""
     sensed, daa = sky.sensed, sky.daa
     ability = sensed.ability
-    rate = ability.turn_rate_rad_s * sensed.motion.speed_m_s / speed_m_s
+    rate = ability.turn_rate_rad_s * sensed.motion.speed_m_s / speed_m_s / TURN_MARGIN
     motion = sensed.motion._replace(
         position=Position(*start[:3]), heading_rad=start.heading_rad, speed_m_s=speed_m_s
     )

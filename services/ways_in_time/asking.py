@@ -27,22 +27,21 @@ from cratous.core.ways_in_time.search import (
     Found,
     Search,
 )
-from cratous.services.icarous.route_end import TURN_MARGIN
 from cratous.services.ways_in_time.excluded import excluded
 from cratous.services.ways_in_time.places import places_of
 from cratous.spec.mission import Position
 
 BUDGET_S = 0.5
 """Time for one search [s]."""
-CHECKS_PER_S = 30_000
+CHECKS_PER_S = 50_000
 """Checks that a slow core makes in a second; so many times the budget are made at most."""
 STATES = 60_000
 """Greatest number of states in memory; each takes less than a kilobyte."""
-BINS = 200
+BINS = 60
 """A horizon has so many instants that are told apart,"""
-LEAST_BIN_S = 1.0
+LEAST_BIN_S = 2.0
 """but they are no closer to each other than this [s]."""
-LATER = 3.0
+LATER = 2.0
 """The default horizon is the time of a straight flight at the slowest speed, this many times,"""
 MORE_S = 120.0
 """and this much more [s]."""
@@ -57,7 +56,8 @@ class Outcome(StrEnum):
 
 
 class Asked(NamedTuple):
-    """now: present motion; goal: where to; ability: of the airframe, at the present speed; horizon_s: by when the goal
+    """now: present motion; goal: where to; ability: of the airframe, with the
+    turn rate that may be used at the present speed; horizon_s: by when the goal
     must be reached, None for `LATER` straight flights; layers_m: altitudes that may be used beside those of start and
     goal [m MSL]; speeds_m_s: to be flown, the preferred first; () for the present, least and greatest speed.
     """
@@ -129,20 +129,11 @@ def _grid(asked: Asked, scene: Scene) -> Grid:
     speeds = asked.speeds_m_s or tuple(dict.fromkeys((present, least, most)))
     if min(*speeds, now.speed_m_s) <= 0:
         raise ValueError(f"a speed that is not positive: {min(*speeds, now.speed_m_s)} m/s")
-    lateral = now.speed_m_s * ability.turn_rate_rad_s / TURN_MARGIN
+    lateral = now.speed_m_s * ability.turn_rate_rad_s
     craft = Craft(speeds, lateral, ability.acceleration_m_s2, ability.max_climb_m_s)
-    keep_m = max([scene.volume.dthr_m, *(v.dthr_m for v in scene.volumes)])
-    places = places_of(
-        now.position,
-        asked.goal,
-        speeds[0],
-        craft.radius_m(speeds[0]),
-        scene.zones,
-        scene.intruders,
-        keep_m=keep_m,
-        margin_m=scene.margin_m,
-        layers_m=[alt for alt in asked.layers_m if alt >= ability.floor_m],
-    )
+    start, speed = now.position, speeds[0]
+    layers = [alt for alt in asked.layers_m if alt >= ability.floor_m]
+    places = places_of(start, asked.goal, speed, craft.radius_m(speed), scene, layers)
     return Grid(now, places, craft, Checks(scene))
 
 

@@ -10,15 +10,16 @@ import random
 from collections.abc import Iterator, Sequence
 
 from cratous.core.avoidance.prediction import Intruder, later
+from cratous.core.ways_in_time.scene import Scene
 from cratous.spec.mission import Position, Zone, ZoneKind
 
-MOST_PLACES = 72
+MOST_PLACES = 90
 """As many places are used; those that lengthen the way least."""
 RINGS = (0.5, 1.5)
 """Distances of places from zones, in turn radii beyond the margin."""
 SHARES = (0.25, 0.5, 0.75)
 """Places on the straight line to the goal, by their share of it."""
-SAMPLES = 12
+SAMPLES = 24
 """Number of samples around that line."""
 ASIDE, ASIDE_RADII = 8, 3.0
 """Number of places around the start, and their distance in turn radii."""
@@ -31,21 +32,18 @@ def places_of(
     goal: Position,
     speed_m_s: float,
     radius_m: float,
-    zones: Sequence[Zone],
-    intruders: Sequence[Intruder],
-    *,
-    keep_m: float,
-    margin_m: float,
-    layers_m: Sequence[float],
+    scene: Scene,
+    layers_m: Sequence[float] = (),
 ) -> tuple[Position, ...]:
     """The goal, then places between it and the start.
 
-    speed_m_s, radius_m: of the flight and of its turns; keep_m: distance to keep from intruders [m]; margin_m: to
-    zones [m]; layers_m: altitudes beside those of start and goal [m].
+    speed_m_s, radius_m: of the flight and of its turns; layers_m: altitudes beside those of start and goal [m].
     """
+    zones, intruders = scene.zones, scene.intruders
+    keep_m = max([scene.volume.dthr_m, *(v.dthr_m for v in scene.volumes)])
     found = dict[Position, float]()
     levels = tuple(dict.fromkeys((start.alt_m, goal.alt_m, *layers_m)))
-    beside = [margin_m + AWAY_M + share * radius_m for share in RINGS]
+    beside = [scene.margin_m + AWAY_M + share * radius_m for share in RINGS]
     around = [2 * math.pi * k / ASIDE for k in range(ASIDE)]
     away_m = ASIDE_RADII * radius_m
     flat = [
@@ -57,7 +55,7 @@ def places_of(
     flat = [*_beside_zones(zones, beside)]
     flat += _beside_traffic(start, goal, speed_m_s, intruders, keep_m + AWAY_M + radius_m)
     flat += _between(start, goal, radius_m)
-    for north, east in flat:
+    for north, east in _outside(flat, zones):
         for alt in levels:
             place = Position(north, east, alt)
             found[place] = _detour_m(start, place, goal)
@@ -85,6 +83,20 @@ def _beside_zones(
             for part in shape.geoms if isinstance(shape, MultiPolygon) else (shape,):
                 if not part.is_empty:
                     yield from ((float(x), float(y)) for x, y in part.exterior.coords[:-1])
+
+
+def _outside(
+    places: Sequence[tuple[float, float]], zones: Sequence[Zone]
+) -> Iterator[tuple[float, float]]:
+    """The places that are in no keep-out zone, about: they are of no use, whatever the kernels say of their legs."""
+    if not zones:
+        yield from places
+        return
+    from shapely import Polygon, contains_xy, union_all
+
+    barred = union_all([Polygon(z.vertices) for z in zones if z.kind is ZoneKind.KEEP_OUT])
+    within = contains_xy(barred, [p[0] for p in places], [p[1] for p in places])
+    yield from (place for place, bad in zip(places, within, strict=True) if not bad)
 
 
 def _beside_traffic(
