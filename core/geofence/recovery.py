@@ -83,7 +83,8 @@ def _candidates(x: float, y: float, shape: Polygon, d: float) -> np.ndarray:
         _circles_cross(ax, ay, d),
     ]
     found = np.concatenate([np.stack(part, axis=1) for part in parts])
-    return found[np.isfinite(found).all(axis=1)]
+    finite: np.ndarray = found[np.isfinite(found).all(axis=1)]
+    return finite
 
 
 def _lines_cross(

@@ -67,7 +67,9 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
         (point["north_m"], point["east_m"]) for task in mission["tasks"] for point in task["points"]
     ]
     shown += [(v["position"]["north_m"], v["position"]["east_m"]) for v in mission["vehicles"]]
-    zones = [(zone, None) for zone in mission["zones"] if "moving" not in zone]
+    zones: list[tuple[Any, Any]] = [
+        (zone, None) for zone in mission["zones"] if "moving" not in zone
+    ]
     late = [(c["zone"], c["at_ms"] / 1000) for c in mission.get("changes", []) if c["zone"]]
     zones += [(zone, at_s) for zone, at_s in late if "moving" not in zone]
     drifting = [zone for zone in (*mission["zones"], *(z for z, _ in late)) if "moving" in zone]

@@ -16,6 +16,8 @@ from typing import Any
 from cratous.core.geofence.motion import stays_left
 from cratous.core.geofence.planar import edges_of, orient
 from cratous.core.kernel import Vec2
+from cratous.core.permit.tubes import disc_within
+from cratous.core.schedule.rows import runs_forward
 from cratous.services.loading.checks import MAX_REACH_M, Where
 from cratous.services.loading.polygons import Corner, polygon_problem
 from cratous.spec.errors import BadInput
@@ -104,16 +106,17 @@ def _of_zone(mission: Mission, k: int, zone: SweptZone, fault: Any) -> Iterator[
             "0 m/s",
         )
     slowest = min(mission.vehicles, key=lambda one: one.speed_m_s, default=None)
-    if slowest is not None and speed_m_s >= slowest.speed_m_s:
+    velocity = Vec2(*moving.velocity_m_s)
+    if slowest is not None and not disc_within(velocity, 0, slowest.speed_m_s):
         yield fault(
             f"{item}.velocity_m_s",
             f"zone {zone.id} moves too fast to be kept clear of",
-            f"less than {slowest.speed_m_s:g} m/s, the speed of vehicle {slowest.id}",
+            f"at most {slowest.speed_m_s:g} m/s, the speed of vehicle {slowest.id}",
             f"{speed_m_s:g} m/s",
         )
     end_ms = mission.simulation.limit_ms
     until_ms = end_ms if moving.until_ms is None else moving.until_ms
-    if until_ms <= moving.from_ms:
+    if not runs_forward(moving.from_ms + 1, until_ms):
         name, got = (
             ("until_s", until_ms) if moving.until_ms is not None else ("from_s", moving.from_ms)
         )
@@ -126,7 +129,7 @@ def _of_zone(mission: Mission, k: int, zone: SweptZone, fault: Any) -> Iterator[
     last = _moved(moving, min(until_ms, end_ms))
     if all(map(math.isfinite, (x for c in last for x in c))):
         far_m = max(math.hypot(*corner) for corner in last)
-        if far_m > MAX_REACH_M:
+        if not all(disc_within(Vec2(*corner), 0, MAX_REACH_M) for corner in last):
             yield fault(
                 f"{item}.velocity_m_s",
                 f"zone {zone.id} leaves the area of the mission",

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator
 from itertools import accumulate, pairwise
 
+from cratous.core.schedule.rows import runs_forward
 from cratous.services.mission.moving_zones import (
     exact_moving_leg_ok,
     moving_deciding,
@@ -44,8 +45,8 @@ def _verdict(zone: MovingZone, vehicle: int, ways: list[tuple[PlanItem, Path, Pa
     for item, transit, path in ways:
         parts = [*_legs(transit, item.depart_ms, item.arrive_ms), *_wait(item)]
         for leg, times_ms, radius_m in (*parts, *_legs(path, item.start_ms, item.end_ms)):
-            over = zone.until_ms is not None and times_ms[0] >= zone.until_ms
-            if over or times_ms[1] < zone.from_ms:
+            over = zone.until_ms is not None and runs_forward(zone.until_ms, times_ms[0])
+            if over or not runs_forward(zone.from_ms, times_ms[1]):
                 continue
             checks += 1
             if radius_m is None:
@@ -100,6 +101,6 @@ def _along(p: Position, q: Position, share: float) -> Position:
 
 
 def _wait(item: PlanItem) -> Iterator[Part]:
-    if item.hold is not None and item.wait_ms > 0:
+    if item.hold is not None and item.wait_ms:
         at = Position(item.hold.north_m, item.hold.east_m, item.hold.alt_m)
         yield (at, at), (item.arrive_ms, item.arrive_ms + item.wait_ms), item.hold.radius_m

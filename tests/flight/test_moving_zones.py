@@ -68,7 +68,7 @@ def _in_a_change(data: Data) -> None:
     ("change", "text"),
     [
         (lambda d: zone(d).update(kind="keep_in"), "keep-in zone 7 moves"),
-        (lambda d: zone(d).update(velocity_m_s=[-25, 0]), "moves too fast"),
+        (lambda d: zone(d).update(velocity_m_s=[-25, 0.01]), "moves too fast"),
         (lambda d: zone(d).update(velocity_m_s=[0, 0]), "does not move"),
         (lambda d: zone(d).pop("velocity_m_s"), "does not move"),
         (lambda d: zone(d).update(velocity_m_s=[-250, 0]), "velocity_m_s"),

@@ -14,7 +14,7 @@ def claim(c: Claim) -> None:
     begin, end, s, t = c.reals("begin end s t")
     at = begin + s * (end - begin)
     first, last = c.use(seen_from, p, v, begin), c.use(seen_from, q, v, end)
-    movement = geofence.Movement(v, begin, end)
+    movement = geofence.Movement(geofence.Point(v.x, v.y), begin, end)
     moving = c.define(geofence.moved_edge_met, p, q, a, b, movement, s, t)
     standing = c.define(geofence.common_point, first, last, a, b, s, t)
     c.show(c.same(moving, standing), "a common point")

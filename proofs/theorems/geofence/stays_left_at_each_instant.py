@@ -1,6 +1,8 @@
 """A moving vertex is taken to stay left of a line exactly when there is no instant of the span at which it is right of it; where
 it does not stay, it is right of it at the beginning or at the end."""
 
+from typing import Any
+
 from cratous.core.geofence.motion import stays_left
 from cratous.proofs.claim import Claim
 from cratous.spec import geofence
@@ -12,7 +14,7 @@ def claim(c: Claim) -> None:
     c.premise(c.all_of(begin <= t, t <= end))
     stays = c.use(stays_left, a, b, m, v, begin, end)
 
-    def turned(at):
+    def turned(at: Any) -> Any:
         return c.define(geofence.turn, a, b, c.define(geofence.moved, m, v, at))
 
     c.step(
