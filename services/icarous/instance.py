@@ -6,7 +6,8 @@ that deviates least from the course. HANDBACK: the way back has been free for a 
 ICAROUS steers until UxAS takes it, and withdraws the offer on a new conflict. Own state and traffic come from
 the vehicle itself; the bridge delivers zones and waypoints, and carries away SETMOD, SETVEL and HBEAT.
 Without the bridge there is no offer: the instance flies along the waypoints it knows. The kernels of
-`core.authority.cycle` decide who flies and every change of authority.
+`core.authority.cycle` decide who flies and every change of authority; `services.icarous.cognition` has the mode that
+decides what is flown, and why.
 """
 
 from __future__ import annotations
