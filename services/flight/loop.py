@@ -367,15 +367,8 @@ class Flight:
                     self._instance(vid, given._replace(hand=hand))
                 case Offers(vid) | Uncertified(vid):
                     self._vehicle(vid, Held(self.now_ms, answer))
-                case (
-                    Foresees(vid)
-                    | Checks(vid)
-                    | TakesOff(vid)
-                    | Hears(vid)
-                    | Merges(vid)
-                    | Decides(vid)
-                ):
-                    self._publish(of_instance(answer), f"icarous/{vid}")
+                case Foresees(v) | Checks(v) | TakesOff(v) | Hears(v) | Merges(v) | Decides(v):
+                    self._publish(of_instance(answer), f"icarous/{v}")
                 case WithoutLink(vid) | Fails(vid):
                     self._publish(of_instance(answer), f"icarous/{vid}")
                     self._executive(answer)
