@@ -62,6 +62,9 @@ COMMANDS = {
     "version": "Print the version.",
 }
 
+LASTING = frozenset({"campaign", "icarous", "serve", "sim", "uxas"})
+"""Commands that may run for days."""
+
 
 class LazyGroup(click.Group):
     """A group that imports its commands when they are called."""
@@ -104,8 +107,9 @@ def main(argv: list[str] | None = None) -> int:
     arguments = [part for part in arguments if part != "--debug"]
     as_json = "--json" in arguments
     if argv is None:
-        # most objects live until the end: collect garbage less often
-        gc.set_threshold(100_000, 10, 10)
+        # most objects live until the end: collect garbage less often, and hardly ever in a process that ends soon
+        lasts = LASTING.intersection(arguments[:1])
+        gc.set_threshold(100_000 if lasts else 1_000_000, 10, 10)
     try:
         with handlers_as_before() if argv is not None else nullcontext(), stoppable(), told():
             result = cli.main(args=arguments, prog_name="cratous", standalone_mode=False)

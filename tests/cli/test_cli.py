@@ -60,6 +60,17 @@ def test_after_a_flight_garbage_is_collected_as_before(
     assert gc.get_threshold() == before
 
 
+@pytest.mark.parametrize(("words", "at"), [(["version"], 1_000_000), (["uxas", "-h"], 100_000)])
+def test_a_process_that_may_run_for_days_collects_garbage_more_often(
+    words: list[str], at: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    set_to: list[int] = []
+    monkeypatch.setattr(gc, "set_threshold", lambda first, *_: set_to.append(first))
+    monkeypatch.setattr(sys, "argv", ["cratous", *words])
+    assert main() == 0
+    assert set_to == [at]
+
+
 def test_version(run: Run) -> None:
     assert run("version") == (0, f"cratous {__version__} (Python {sys.version.split()[0]})\n", "")
     assert json.loads(run("version", "--json")[1])["cratous"] == __version__
