@@ -298,7 +298,7 @@ def test_which_way_is_predicted(
         assert found == Ahead((straight,), (WIDE,))
     else:
         assert len(found.pieces) == pieces
-        assert len(found.holds) == 2
+        assert len(found.holds) == 1
 
 
 @pytest.mark.parametrize(
