@@ -298,7 +298,7 @@ def test_which_way_is_predicted(
         assert found == Ahead((straight,), (WIDE,), off_plan=next_index > 0)
     else:
         assert len(found.pieces) == pieces
-        assert len(found.holds) == 2
+        assert len(found.holds) == 1
 
 
 @pytest.mark.parametrize(

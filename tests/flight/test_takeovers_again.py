@@ -29,7 +29,7 @@ from cratous.services.icarous.messages import Sensed, Wish
 from cratous.services.icarous.state import Config, Met, State
 from cratous.services.icarous.traffic_monitor import Threat
 from cratous.services.loading import load
-from cratous.spec.mission import Daa, Position, Velocity
+from cratous.spec.mission import Daa, Position, Velocity, Zone, ZoneKind
 
 CONFIG = Config(1, Daa(VOLUME, buffer=1.25), PROJECTION, 500)
 WAY = tuple(Position(1000.0 * k, 0.0, 300.0) for k in range(-1, 6))
@@ -102,9 +102,12 @@ def test_a_line_that_is_left_is_looked_at_anew(
 
 
 def test_the_hold_at_the_end_of_the_way_is_looked_at() -> None:
-    """One hovers beside the end: the way is clear of it, the circle that ends it is not."""
-    hovers = Intruder(9, Position(5000.0, 300.0, 300.0), Velocity(0.0, 0.0, 0.0))
+    """One hovers beside the end: the way is clear of it, no circle that ends it is, and a zone bars the way straight on."""
+    hovers = Intruder(9, Position(5000.0, 195.0, 300.0), Velocity(0.0, 0.0, 0.0))
+    sides = ((5120.0, -500.0), (5210.0, -500.0), (5210.0, 500.0), (5120.0, 500.0))
+    behind = Zone(1, ZoneKind.KEEP_OUT, sides, 0.0, 1000.0)
     state = handed_back(hovers)
+    state = replace(state, told=replace(state.told, zones=(behind,)))
     assert looked(state, hovers, 1000).encounter.permitted
     state = replace(state, told=replace(state.told, next_index=6))
     met = looked(state, hovers, 200_000)  # 27 s before the end
