@@ -6,6 +6,8 @@ import inspect
 from dataclasses import dataclass
 from typing import Any, get_type_hints
 
+from cratous.proofs.engine import written_types
+
 EXACT = 2**53
 """Every integer up to this magnitude is a double."""
 INT64 = 2**63
@@ -31,7 +33,7 @@ GENERATED = {
 
 
 def is_record(value: Any) -> bool:
-    """A `NamedTuple` of the subset's kinds: no methods, properties, defaults or further bases."""
+    """A `NamedTuple` of the subset's kinds, as its file writes it: no methods, properties, defaults or further bases."""
     if not (inspect.isclass(value) and value.__bases__ == (tuple,) and type(value) is type):
         return False
     fields = vars(value).get("_fields", ())
@@ -44,7 +46,7 @@ def is_record(value: Any) -> bool:
     made = scope.get("__name__") == f"namedtuple_{value.__name__}"
     hints = get_type_hints(value)
     kinds = set(hints) == set(fields) and all(is_kind(kind) for kind in hints.values())
-    return not more and plain and made and kinds
+    return not more and plain and made and kinds and written_types.record(value)
 
 
 def _is_field(value: Any, number: int) -> bool:
