@@ -129,11 +129,12 @@ class FreeResults(Claim):
             return z3.BoolVal(
                 False
             )  # it is meant for the same arguments, at which only runs compute it
+        own = [k for k in calls if set(k[2]) <= set(key[2])]
         places, now = _terms(any_value), _terms(self.own[key])
         goals = z3.And(*[z3.Implies(z3.And(*p, *f), goal) for p, f, goal in self.said])
         switched = [(s, z3.BoolVal(s.eq(ours))) for s, _ in off]
         ways = []
-        for values in _ways(now, [free[k] for k in here or calls]):
+        for values in _ways(now, [free[k] for k in here or own or calls]):
             at = [z3.substitute(value, *off) for value in values]
             ways.append(z3.substitute(goals, *switched, *zip(places, at, strict=True)))
         return z3.Or(*ways) if ways else z3.BoolVal(True)

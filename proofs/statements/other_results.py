@@ -173,7 +173,9 @@ class _Place:
         here = [m for m in calls if m[1] == call[1]]
         if calls and not here and kinds(calls[0][0]) == kinds(call[0]):
             return False  # taking the same kinds of arguments, it is meant for the same ones
-        values = [base.found[m] for m in here or calls]
+        given = leaves(call[1])
+        own = [m for m in calls if all(value in given for value in leaves(m[1]))]
+        values = [base.found[m] for m in here or own or calls]
         fit = [new for value in values for new in _with_value(result, value)]
         return not fit or any(not self._run({call: new}).false for new in fit)
 

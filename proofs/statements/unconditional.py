@@ -6,11 +6,13 @@ leave fewer, so such goals are analysed further (`decided`).
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Protocol
 
 import z3
 
+from cratous.core.kernel import qualified
 from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.engine.terms import free_names, known, leaves
 from cratous.proofs.statements.closed_definitions import full_name
@@ -170,18 +172,26 @@ def by_way_of(claim: Outline, meant: str) -> frozenset[Use]:
 def of_further_values(claim: Outline, use: int, meant: str) -> bool:
     """Whether the statement has this definition of some of the use's arguments beside a value that they do not give.
 
-    Then it says that THERE IS such a value, or none: a kernel that is true where there is none denies it.
+    Then it says that THERE IS such a value, or none: a kernel that is true where there is none denies it. The argument
+    of the definition that takes the value is none of the kernel's, by its name.
     """
     own, args = claim.stated_uses[use]
     given = _names_of(claim, args)
+    named = {name for f in claim.arguments if qualified(f) == own[0] for name in _parameters(f)}
     for function, calls in claim.arguments.items():
         for call in calls if full_name(function) == meant else ():
-            names = [_names_of(claim, leaf) for leaf in leaves(call)]
-            further = [some for some in names if not some <= given]
-            ours = [some for some in names if some and some <= given]
+            names = {
+                p: _names_of(claim, v) for p, v in zip(_parameters(function), call, strict=True)
+            }
+            further = [p for p, some in names.items() if not some <= given and p not in named]
+            ours = [p for p, some in names.items() if some and some <= given]
             if further and ours and own not in claim.uses_in(_all(call)):
                 return True
     return False
+
+
+def _parameters(function: Callable[..., Any]) -> list[str]:
+    return list(inspect.signature(function).parameters)
 
 
 def _names_of(claim: Outline, value: Any) -> set[str]:
