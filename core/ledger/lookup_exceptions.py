@@ -84,7 +84,6 @@ EXCUSES: dict[str, tuple[tuple[str, ...], str]] = {
     "proofs.engine.subset.lint": (("__globals__",), READ),
     "proofs.engine.subset._head": (("__globals__",), READ),
     "proofs.engine.subset.identity": (("__globals__", "vars"), READ),
-    "proofs.engine.subset._is_written": (("getattr",), READ),
     "proofs.engine.definition_subset._check": (("__globals__",), READ),
     "proofs.engine.definition_subset.DefinitionKinds.named": (("vars",), READ),
     "proofs.engine.expressions.Kinds._call": (("getattr",), READ),
@@ -95,7 +94,7 @@ EXCUSES: dict[str, tuple[tuple[str, ...], str]] = {
         ("vars",),
         "the names of a class that is walked itself",
     ),
-    "proofs.engine.module_source._parsed": (("open",), RUNS),
+    "proofs.engine.module_source.parsed": (("open",), RUNS),
     "proofs.engine.module_source._value": (("eval",), MADE),
     "proofs.engine.subset.lint_all": (("REGISTRY",), ENTRY),
     "proofs.engine.theorem_files._module": (

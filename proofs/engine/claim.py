@@ -151,12 +151,14 @@ class Claim:
     def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:
         """Run a kernel of `core` on these values; the theorem is about it.
 
-        when: the condition under which the call counts; elsewhere its value is arbitrary and no obligation arises.
+        when: where the call counts; elsewhere its value is arbitrary and no obligation arises.
         """
         self.used.append(kernel)
         self._name()
         where = TRUE if when is True else statement(when)
-        return self._lift(kernel, args, where=where)
+        # an opaque kernel's is unknown already
+        name = "" if kernel in self.stubs else f"{self.prefix}elsewhere!{len(self.used)}"
+        return closed.only_where(where, self._lift(kernel, args, where=where), kernel, name)
 
     def _name(self) -> None:
         for kernel in self.used:  # and those that the theorem or a lemma looks into
@@ -394,6 +396,5 @@ class Claim:
         self.facts, self.granted = [*plain, *gained], ()
 
     def _grant(self, condition: z3.BoolRef) -> None:
-        # for granted in what follows, as an induction does
         self.facts.append(condition)
         self.granted = (condition,)

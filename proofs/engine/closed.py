@@ -20,7 +20,7 @@ from typing import Any, get_type_hints
 import z3
 
 from cratous.core.kernel.sources import ours
-from cratous.proofs.engine.lift import CLOSED, OPAQUE, REPLACED, VISITS, LiftError, lift
+from cratous.proofs.engine.lift import CLOSED, OPAQUE, REPLACED, VISITS, LiftError, join, lift
 from cratous.proofs.engine.solver_order import check
 from cratous.proofs.engine.symbolic import PATHS, RANGE, SymReal, as_real
 from cratous.proofs.engine.terms import Stub, fresh, known
@@ -62,6 +62,17 @@ class Requirements:
 def path_to(where: z3.BoolRef) -> z3.BoolRef:
     """The condition of the path being explored, together with `where`."""
     return z3.simplify(z3.And(where, *[c for path in PATHS for c in path.conditions]))
+
+
+def only_where(where: z3.BoolRef, value: Any, function: Function, name: str) -> Any:
+    """A function's value where a condition holds, and any value of its type elsewhere, where it may not be defined.
+
+    name: of the other value; empty for none.
+    """
+    if where is TRUE or not name:
+        return value
+    other = fresh(name, get_type_hints(function)["return"])
+    return join([(where, value), (z3.Not(where), other)])
 
 
 @contextmanager

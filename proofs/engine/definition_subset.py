@@ -21,9 +21,10 @@ from cratous.core.kernel.sources import ours
 from cratous.proofs.engine.expressions import Kinds, Refused
 from cratous.proofs.engine.lift import Visit
 from cratous.proofs.engine.module_source import NOTHING, constant
-from cratous.proofs.engine.subset import Body, Finding, hints, identity, lint, syntax
+from cratous.proofs.engine.subset import PLAIN, Body, Finding, hints, identity, lint, syntax
 from cratous.proofs.engine.terms import leaves
 from cratous.proofs.engine.value_kinds import Kind, Literal, is_kind, merged, shown
+from cratous.proofs.engine.written_types import differing
 
 MORE = (ast.Mod, ast.LShift, ast.RShift)
 
@@ -264,6 +265,8 @@ def _check(function: Any) -> tuple[list[Finding], list[types.FunctionType]]:
     for part, kind in types_.items():
         if not is_kind(kind):
             report(node, f"the type of {part!r}: float, int, bool or a record without behaviour")
+    for what in differing(node, types_, function.__globals__):
+        report(node, f"{what} is not the one that is written: {PLAIN}")
     if found:
         return found, []
     local = {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and not _loaded(n)}

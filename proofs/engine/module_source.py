@@ -12,6 +12,7 @@ import inspect
 import os
 import sys
 import types
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -27,7 +28,8 @@ KNOWN = {"Fraction": Fraction, "tuple": tuple, "range": range}
 
 
 @functools.cache
-def _parsed(file: str, changed_ns: int) -> ast.Module:
+def parsed(file: str, changed_ns: int) -> ast.Module:
+    """The syntax of a file, read once for each time of its change [ns]."""
     with open(file, encoding="utf-8") as text:
         return ast.parse(text.read())
 
@@ -43,7 +45,7 @@ def is_top(function: types.FunctionType) -> bool:
 @functools.cache
 def _bindings(file: str, changed_ns: int) -> dict[str, list[bool]]:
     """All bindings of names in a file, outside of functions and classes; for each, whether it is a top-level `def`."""
-    tree = _parsed(file, changed_ns)
+    tree = parsed(file, changed_ns)
     inner = {
         id(n)
         for f in ast.walk(tree)
@@ -69,25 +71,35 @@ def _bound_name(node: ast.AST) -> str:
     return node.id if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) else ""
 
 
-def constant(module: types.ModuleType, name: str, imports: int = IMPORTS) -> Any:
+def constant(
+    module: types.ModuleType,
+    name: str,
+    imports: int = IMPORTS,
+    is_record: Callable[[Any], bool] = lambda _: False,
+) -> Any:
     """The constant that a module's file binds to a name, followed through imports from other files.
 
-    NOTHING where there is no such binding, or more than one. imports: the longest chain of imports that is followed.
+    NOTHING where there is no such binding, or more than one. imports: the longest chain of imports that is followed;
+    is_record: which classes of the module a constant may be made with.
     """
     file = str(module.__file__)
     changed_ns = os.stat(file).st_mtime_ns
+    if len(_bindings(file, changed_ns).get(name, ())) != 1:
+        return NOTHING
     found = _imported(file, changed_ns, name) if imports else None
     if found is None:
-        return _constants(file, changed_ns).get(name, NOTHING)
+        said = _constants(file, changed_ns).get(name, NOTHING)
+        made = {n: c for n, c in vars(module).items() if is_record(c)}
+        return _record(file, changed_ns, name, made) if said is NOTHING and made else said
     home, its = found
     source = sys.modules.get(home) if home.split(".")[0] in PACKAGES else None
-    return NOTHING if source is None else constant(source, its, imports - 1)
+    return NOTHING if source is None else constant(source, its, imports - 1, is_record)
 
 
 @functools.cache
 def _constants(file: str, changed_ns: int) -> dict[str, Any]:
     known: dict[str, Any] = {}
-    for node in _parsed(file, changed_ns).body:
+    for node in parsed(file, changed_ns).body:
         if isinstance(node, ast.Assign):
             pairs = [(target, node.value) for target in node.targets]
         elif isinstance(node, ast.AnnAssign) and node.value is not None:
@@ -105,11 +117,19 @@ def _constants(file: str, changed_ns: int) -> dict[str, Any]:
     return known
 
 
+def _record(file: str, changed_ns: int, name: str, made: dict[str, Any]) -> Any:
+    """The record that a file binds to a name, made of written values; NOTHING if it is none."""
+    for node in parsed(file, changed_ns).body:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == name:
+            return _value(node.value, made)
+    return NOTHING
+
+
 def _imported(file: str, changed_ns: int, name: str) -> tuple[str, str] | None:
     """Module and original name from which a file imports a name, if once and at the top level."""
     found = [
         (str(node.module), alias.name)
-        for node in _parsed(file, changed_ns).body
+        for node in parsed(file, changed_ns).body
         if isinstance(node, ast.ImportFrom) and not node.level
         for alias in node.names
         if (alias.asname or alias.name) == name

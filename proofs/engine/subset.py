@@ -12,7 +12,6 @@ reading. Each expression has the same kind on every path (see `expressions`).
 from __future__ import annotations
 
 import ast
-import builtins
 import sys
 import types
 from collections.abc import Callable, Container
@@ -24,7 +23,9 @@ from cratous.core.kernel.sources import text_of
 from cratous.proofs.engine.expressions import Kinds, Refused
 from cratous.proofs.engine.module_source import is_top
 from cratous.proofs.engine.value_kinds import Kind, Literal, fits, is_kind, merged, shown
+from cratous.proofs.engine.written_types import differing
 
+PLAIN = "write float, int, bool or a record by its own name"
 STATEMENTS = "a kernel has assignments to names, `if` and `return`"
 INSTEAD: dict[type[ast.AST], str] = {
     ast.While: "loops over data are `fold`s over a kernel step",
@@ -119,13 +120,6 @@ def lint(function: Any) -> list[Finding]:
     return found
 
 
-def _is_written(node: ast.expr, kind: Any, scope: dict[str, Any]) -> bool:
-    """Whether the type at run time is the one of the annotation's text."""
-    text = str(node.value) if isinstance(node, ast.Constant) else ast.unparse(node)
-    known = scope.get(text, getattr(builtins, text, None))
-    return known is kind or (isinstance(node, ast.Attribute) and kind is not None)
-
-
 Report = Callable[[ast.AST | None, str], None]
 
 
@@ -143,8 +137,6 @@ def _head(node: ast.FunctionDef, function: types.FunctionType, report: Report) -
     for argument in given.args:
         if argument.annotation is None:
             report(argument, f"argument {argument.arg!r} has no type")
-        elif not _is_written(argument.annotation, hints(function).get(argument.arg), scope):
-            report(argument, f"the type of {argument.arg!r} is not the one that is written")
     if node.returns is None:
         report(node, "the result has no type")
     if getattr(node, "type_params", None):
@@ -157,6 +149,8 @@ def _head(node: ast.FunctionDef, function: types.FunctionType, report: Report) -
                 f"the type of {said}: float, int, bool or a record of these without behaviour; it is "
                 f"{getattr(kind, '__name__', kind)}",
             )
+    for what in differing(node, hints(function), scope):
+        report(node, f"{what} is not the one that is written: {PLAIN}")
 
 
 class Body:

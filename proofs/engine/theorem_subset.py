@@ -2,8 +2,9 @@
 
 A theorem's file has a docstring, imports of kernels, definitions, records and numbers, constants and functions. Its
 functions compute with the values that the claim gives them, in loops over written values; of the claim they see only
-its statements (`OFFERED`). Values that could change unnoticed by the prover are not permitted: a stored iterator, or
-a list that another function extends.
+its statements (`OFFERED`). Each reading of a claim must state the same, so nothing may outlive one: constants and
+defaults are no lists, a list is changed only by the function that made it, iterators are consumed where they are made
+and their makers have no other name, and methods are called where they are named.
 """
 
 from __future__ import annotations
@@ -15,6 +16,16 @@ from pathlib import Path
 
 from cratous.core.kernel.sources import place
 from cratous.proofs.engine.claim import Claim
+from cratous.proofs.engine.theorem_names import (
+    BEHAVIOUR,
+    BUILTINS,
+    CONSUMERS,
+    FIELDS,
+    ITERATORS,
+    Refused,
+    made_in,
+    rebound,
+)
 from cratous.spec.errors import BadInput
 
 OFFERED = frozenset(
@@ -50,32 +61,6 @@ OFFERED = frozenset(
 """The statements of a claim that a theorem may use."""
 HIDDEN = (frozenset(vars(Claim)) | frozenset(Claim.__dataclass_fields__) | {"term"}) - OFFERED
 METHODS = frozenset(["append", "split", "join", "items", "keys", "values"])
-BUILTINS = frozenset(
-    [
-        "zip",
-        "list",
-        "dict",
-        "object",
-        "tuple",
-        "float",
-        "str",
-        "map",
-        "abs",
-        "enumerate",
-        "len",
-        "range",
-        "min",
-        "max",
-        "int",
-        "bool",
-        "sorted",
-        "reversed",
-        "sum",
-        "True",
-        "False",
-        "None",
-    ]
-)
 STATEMENTS: tuple[type[ast.stmt], ...] = (
     ast.Assign, ast.AnnAssign, ast.For, ast.If, ast.Return, ast.FunctionDef, ast.Expr,
 )  # fmt: skip
@@ -86,9 +71,6 @@ EXPRESSIONS: tuple[type[ast.expr], ...] = (
 )  # fmt: skip
 TYPES = (ast.Name, ast.Attribute, ast.Subscript, ast.Tuple, ast.List, ast.BinOp, ast.Constant)
 COMPARISONS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq, ast.In, ast.NotIn)
-ITERATORS = frozenset(
-    ["map", "zip", "enumerate", "reversed", "pairwise", "combinations", "product"]
-)
 WORDS: dict[type[ast.AST], str] = {
     ast.Import: "`import` of a whole module",
     ast.ClassDef: "a class",
@@ -98,23 +80,16 @@ WORDS: dict[type[ast.AST], str] = {
     ast.Set: "a set",
     ast.SetComp: "a set",
 }
-MAKERS = (ast.List, ast.Dict, ast.ListComp, ast.DictComp)
-
-
-class _Refused(Exception):
-    def __init__(self, node: ast.AST, what: str, instead: str) -> None:
-        super().__init__(what)
-        self.line, self.what, self.instead = getattr(node, "lineno", 1), what, instead
 
 
 def check(tree: ast.Module, path: Path) -> None:
     """Raise BadInput, with the line, for a theorem's file that is outside of the language."""
     try:
-        modules = _top(tree)
+        modules = _top(tree) - rebound(tree)
         for function in tree.body:
             if isinstance(function, ast.FunctionDef):
                 _Function(function, modules, nested=False).check()
-    except _Refused as refused:
+    except Refused as refused:
         raise BadInput(
             f"a theorem's file does not have {refused.what}",
             where=f"{place(path)}:{refused.line}",
@@ -129,19 +104,22 @@ def _top(tree: ast.Module) -> set[str]:
         if isinstance(node, ast.ImportFrom):
             module = node.module or ""
             if node.level or any(alias.name == "*" for alias in node.names):
-                raise _Refused(node, "such an import", "from package.module import names")
+                raise Refused(node, "such an import", "from package.module import names")
             inside = module.split(".")[1:2]
             if inside == ["proofs"] and not _of_proofs(module):
-                raise _Refused(
+                raise Refused(
                     node, f"an import from {module}", "from cratous.proofs.claim import Claim"
                 )
+            renamed = [a.asname for a in node.names if a.name in ITERATORS and a.asname]
+            if renamed and module == "itertools":
+                raise Refused(node, f"{renamed[0]!r} for a maker of iterators", "its own name")
             names |= {alias.asname or alias.name for alias in node.names}
         elif isinstance(node, ast.Assign):
             _Function(None, names, nested=False).expression(node.value)
             if not all(isinstance(target, ast.Name) for target in node.targets):
-                raise _Refused(node, "such an assignment", "a constant with a name")
+                raise Refused(node, "such an assignment", "a constant with a name")
         elif not isinstance(node, ast.FunctionDef) and not (number == 0 and _is_text(node)):
-            raise _Refused(node, _named(node), "imports from modules, constants and functions")
+            raise Refused(node, _named(node), "imports from modules, constants and functions")
     return names
 
 
@@ -165,17 +143,14 @@ class _Function:
 
     def __init__(self, node: ast.FunctionDef | None, imported: set[str], *, nested: bool) -> None:
         self.node, self.imported, self.nested = node, imported, nested
-        # an inner function must not change what it receives: its next call would see the change
-        self.made = {
-            name.id
-            for part in ([] if node is None else _own(node.body))
-            for name in _targets(part, made_here=nested)
-        }
+        # what a function receives, or takes from elsewhere by another name, outlives it: the next call would see a
+        # change
+        self.made: set[str] = set() if node is None else made_in(node)
 
     def check(self) -> None:
         assert self.node is not None
         if self.node.decorator_list:
-            raise _Refused(self.node, "a decorator", "a plain function")
+            raise Refused(self.node, "a decorator", "a plain function")
         for default in (*self.node.args.defaults, *self.node.args.kw_defaults):
             if default is not None:
                 self.expression(default)
@@ -191,14 +166,14 @@ class _Function:
         for part in ast.walk(node):
             text = isinstance(part, ast.Constant) and part.value is not None and part.value != ...
             if isinstance(part, ast.expr) and (text or not isinstance(part, TYPES)):
-                raise _Refused(node, "an annotation that is computed", "the name of a type")
+                raise Refused(node, "an annotation that is computed", "the name of a type")
             if isinstance(part, ast.Name | ast.Attribute):
                 self.expression(part)
 
     def _block(self, body: list[ast.stmt]) -> None:
         for node in body:
             if not isinstance(node, STATEMENTS):
-                raise _Refused(node, _named(node), "assignments, loops and calls")
+                raise Refused(node, _named(node), "assignments, loops and calls")
             self._statement(node)
 
     def _statement(self, node: ast.stmt) -> None:
@@ -229,59 +204,63 @@ class _Function:
     def _target(self, node: ast.expr) -> None:
         if isinstance(node, ast.Subscript):
             if not (isinstance(node.value, ast.Name) and node.value.id in self.made):
-                raise _Refused(
-                    node, "a change of what is made elsewhere", "a list of this function"
-                )
+                raise Refused(node, "a change of what is made elsewhere", "a list of this function")
             self.expression(node.slice)
             return
         for part in ast.walk(node):
             if isinstance(part, ast.Attribute):
                 self._attribute(part)
-                raise _Refused(
+                raise Refused(
                     part, f"a change of {part.attr!r}", "names are assigned, nothing else"
                 )
         parts = [n for n in ast.walk(node) if isinstance(n, ast.expr)]
         if not all(
             isinstance(part, ast.Name | ast.Tuple | ast.Starred | ast.List) for part in parts
         ):
-            raise _Refused(node, "such an assignment", "names")
+            raise Refused(node, "such an assignment", "names")
 
     def _kept(self, value: ast.expr, targets: list[ast.expr]) -> None:
         """Check a value that is assigned or returned: no iterator, which would be exhausted when used again."""
         apart = bool(targets) and all(isinstance(t, ast.Tuple | ast.List) for t in targets)
         self.expression(value, consumed=apart)
 
-    def expression(self, node: ast.expr, *, consumed: bool = False) -> None:
-        """Check an expression; consumed: it is consumed at once, so it may be an iterator."""
+    def expression(
+        self, node: ast.expr, *, consumed: bool = False, being_called: bool = False
+    ) -> None:
+        """Check an expression; consumed: it is consumed at once, so it may be an iterator; being_called: it is what
+        is called."""
         if not isinstance(node, EXPRESSIONS):
-            raise _Refused(node, _named(node), "numbers, records, lists and calls")
+            raise Refused(node, _named(node), "numbers, records, lists and calls")
         called = node.func if isinstance(node, ast.Call) else None
         iterator = isinstance(node, ast.GeneratorExp) or (
             isinstance(called, ast.Name) and called.id in ITERATORS
         )
         if iterator and not consumed:
-            raise _Refused(node, "an iterator that is kept", "a list: [... for ... in ...]")
+            raise Refused(node, "an iterator that is kept", "a list: [... for ... in ...]")
         if isinstance(node, ast.Attribute):
-            self._attribute(node)
+            self._attribute(node, being_called)
         python = isinstance(node, ast.Name) and hasattr(builtins, node.id)
         inner = isinstance(node, ast.Name) and node.id.startswith("__")
         if isinstance(node, ast.Name) and (
             inner or (python and node.id not in BUILTINS | self.imported)
         ):
-            raise _Refused(node, f"{node.id!r} of Python", "the claim's statements")
+            raise Refused(node, f"{node.id!r} of Python", "the claim's statements")
         if called is not None and not isinstance(called, ast.Name | ast.Attribute):
-            raise _Refused(node, "a call of what has no name", "name it first")
+            raise Refused(node, "a call of what has no name", "name it first")
+        if isinstance(node, ast.Name) and node.id in ITERATORS and not being_called:
+            raise Refused(node, f"{node.id!r} by another name", f"a call: {node.id}(...)")
         if isinstance(node, ast.Compare) and not all(isinstance(o, COMPARISONS) for o in node.ops):
-            raise _Refused(node, "`is`", "==, or c.same of two values")
+            raise Refused(node, "`is`", "==, or c.same of two values")
         if isinstance(node, ast.Lambda):
             for default in (*node.args.defaults, *node.args.kw_defaults):
                 if default is not None:
                     self.expression(default)
             _Function(None, self.imported, nested=True).expression(node.body)
             return
-        at_once = isinstance(node, ast.Call | ast.Starred)
+        at_once = isinstance(node, ast.Starred) or _last(called) in CONSUMERS
         for part in _parts(node):
-            self.expression(part, consumed=at_once or isinstance(part, ast.Starred))
+            starred = isinstance(part, ast.Starred)
+            self.expression(part, consumed=at_once or starred, being_called=part is called)
         if isinstance(called, ast.Attribute):
             self._method(called)
         if isinstance(node, ast.ListComp | ast.DictComp | ast.GeneratorExp):
@@ -289,23 +268,32 @@ class _Function:
                 self._target(one.target)
                 self.expression(one.iter, consumed=True)
 
-    def _attribute(self, node: ast.Attribute) -> None:
+    def _attribute(self, node: ast.Attribute, being_called: bool = False) -> None:
         of_module = isinstance(node.value, ast.Name) and node.value.id in self.imported
         hidden = node.attr in HIDDEN and not of_module
         if hidden or (node.attr.startswith("_") and node.attr != "__name__"):
-            raise _Refused(
+            raise Refused(
                 node, f"{node.attr!r} of the claim", "its statements: c.show, c.premise, ..."
             )
+        if node.attr in BEHAVIOUR - FIELDS and not of_module and not being_called:
+            raise Refused(node, f"{node.attr!r} without a call", "a call where it is named")
         # another call of it would find more calls
         if node.attr == "calls" and self.nested:
-            raise _Refused(node, "c.calls in an inner function", "c.calls in `claim`")
+            raise Refused(node, "c.calls in an inner function", "c.calls in `claim`")
 
     def _method(self, called: ast.Attribute) -> None:
         owner = called.value.id if isinstance(called.value, ast.Name) else ""
         if called.attr == "append" and owner not in self.made:
-            raise _Refused(called, "a change of what is made elsewhere", "a list of this function")
+            raise Refused(called, "a change of what is made elsewhere", "a list of this function")
         if called.attr not in OFFERED | METHODS and owner not in self.imported:
-            raise _Refused(called, f"a call of {called.attr!r}", "the claim's statements")
+            raise Refused(called, f"a call of {called.attr!r}", "the claim's statements")
+
+
+def _last(called: ast.expr | None) -> str:
+    """The last part of the name that is called; empty for none."""
+    if isinstance(called, ast.Attribute):
+        return called.attr
+    return called.id if isinstance(called, ast.Name) else ""
 
 
 def _parts(node: ast.expr) -> Iterator[ast.expr]:
@@ -317,29 +305,3 @@ def _parts(node: ast.expr) -> Iterator[ast.expr]:
             yield part.value
         elif isinstance(part, ast.comprehension):
             yield from part.ifs
-
-
-def _targets(node: ast.stmt, *, made_here: bool) -> Iterator[ast.Name]:
-    """The names that a statement binds; made_here: only names bound to a list or dict made there."""
-    if isinstance(node, ast.For) and not made_here:
-        targets: list[ast.expr] = [node.target]
-    elif isinstance(node, ast.Assign | ast.AnnAssign):
-        if made_here and not isinstance(node.value, MAKERS):
-            return
-        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-    else:
-        return
-    for target in targets:
-        yield from (n for n in ast.walk(target) if isinstance(n, ast.Name) and _is_stored(n))
-
-
-def _is_stored(name: ast.Name) -> bool:
-    return isinstance(name.ctx, ast.Store)
-
-
-def _own(body: list[ast.stmt]) -> Iterator[ast.stmt]:
-    """The statements of a function, without those of nested functions."""
-    for node in body:
-        yield node
-        if not isinstance(node, ast.FunctionDef):
-            yield from _own([n for n in ast.iter_child_nodes(node) if isinstance(n, ast.stmt)])

@@ -6,6 +6,8 @@ import inspect
 from dataclasses import dataclass
 from typing import Any, get_type_hints
 
+from cratous.proofs.engine import written_types
+
 EXACT = 2**53
 """Every integer up to this magnitude is a double."""
 INT64 = 2**63
@@ -31,9 +33,10 @@ GENERATED = {
 
 
 def is_record(value: Any) -> bool:
-    """A `NamedTuple` of the subset's kinds: no methods, properties, defaults or further bases."""
+    """A `NamedTuple` of the subset's kinds, as its file writes it: no methods, properties, defaults or further bases."""
     if not (inspect.isclass(value) and value.__bases__ == (tuple,) and type(value) is type):
         return False
+    kind: Any = value
     fields = vars(value).get("_fields", ())
     if not fields or vars(value).get("_field_defaults"):
         return False
@@ -43,8 +46,8 @@ def is_record(value: Any) -> bool:
     scope = getattr(value.__new__, "__globals__", {})
     made = scope.get("__name__") == f"namedtuple_{value.__name__}"
     hints = get_type_hints(value)
-    kinds = set(hints) == set(fields) and all(is_kind(kind) for kind in hints.values())
-    return not more and plain and made and kinds
+    kinds = set(hints) == set(fields) and all(map(is_kind, hints.values()))
+    return not more and plain and made and kinds and written_types.record(kind)
 
 
 def _is_field(value: Any, number: int) -> bool:

@@ -21,7 +21,7 @@ from cratous.proofs.engine.terms import free_names, known, leaves
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.statements import free_results, other_results
 from cratous.proofs.statements.relations import Outline, outline
-from cratous.proofs.statements.unconditional import Use, by_way_of
+from cratous.proofs.statements.unconditional import Use, by_way_of, of_definition, of_further_values
 
 Hows = dict[Use, str]
 """For uses that relate a kernel to its definition: how their arguments vary (`engine.reachable_paths`)."""
@@ -94,8 +94,11 @@ class _Stated:
         told = by_way_of(claim, meant)
         rows = {n for n in uses if self.names[n] in told or meant in claim.rows([self.names[n]])}
         places = {n: (self.names[n][0], self._places(n)) for n in uses}
-        statement = other_results.Statement(self.run, places, meant, frozenset(rows))
-        found: set[int] = set()
+        further = frozenset(n for n in uses if of_further_values(claim, n, meant))
+        statement = other_results.Statement(self.run, places, meant, frozenset(rows), further)
+        # a definition that is true of a result, without a condition, has only to exclude another
+        plain = of_definition(claim, meant)
+        found = self._excluding(meant, [n for n in uses if self.names[n] in plain])
 
         def enough(some: set[int]) -> bool:
             return of_more_than_one([hows[self.names[n]] for n in some])
@@ -104,7 +107,7 @@ class _Stated:
             if self.may_run and not enough(found):
                 found |= other_results.decided(statement, seed, calls, enough)
             if calls == CALLS[0] and not enough(found):
-                found |= self._by_solver(meant, [n for n in uses if n not in found])
+                found |= self._by_solver(meant, [n for n in uses if n not in found], further)
         for again in range(TRIES if self.may_run else 0):
             if enough(found):
                 break
@@ -115,14 +118,20 @@ class _Stated:
         terms = map(known, leaves(self.claim.stated_uses[number][1]))
         return {(number, k): term for k, term in enumerate(terms) if free_names(term)}
 
-    def _by_solver(self, meant: str, uses: list[int]) -> set[int]:
+    def _excluding(self, meant: str, uses: list[int]) -> set[int]:
+        claim, possible = self.freed if uses else None, _Asking()
+        if claim is None:
+            return set()
+        return {n for n in uses if free_results.excludes(claim, n, meant, possible)}
+
+    def _by_solver(self, meant: str, uses: list[int], further: frozenset[int]) -> set[int]:
         claim, possible = self.freed, _Asking()
         if claim is None:
             return set()
         found = set()
         for n in uses:
             row = meant in self.claim.rows([self.names[n]])
-            if free_results.decides(claim, n, "" if row else meant, possible):
+            if free_results.decides(claim, n, "" if row else meant, possible, further=n in further):
                 found.add(n)
         return found
 

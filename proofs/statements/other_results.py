@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import inspect
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from hashlib import sha256
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_type_hints
 
 import z3
 
@@ -40,6 +41,7 @@ class Statement(NamedTuple):
     """A statement; uses: the uses of kernels to decide, by number, each with its kernel's name and its arguments
     other than literals.
 
+    further: uses that goals hold against the definition of further values (THERE IS one), so that they may deny it;
     meant: the definition's full name; rows: uses whose goals refer to it without a condition, but not by a result
     that could be replaced (it is evaluated at literals).
     """
@@ -48,6 +50,7 @@ class Statement(NamedTuple):
     uses: Mapping[int, tuple[str, Mapping[Place, z3.ExprRef]]]
     meant: str
     rows: frozenset[int]
+    further: frozenset[int] = frozenset()
 
 
 def decided(
@@ -111,6 +114,7 @@ class _Place:
 
     def __init__(self, of: Statement, seed: str, hairs: int, left: list[int]) -> None:
         self.statement, self.uses, self.rows, self.meant = of.run, of.uses, of.rows, of.meant
+        self.further = of.further
         self.seed, self.hairs, self.left = seed, hairs, left
         # some statements about a fraction (from 0 to 1) seldom apply elsewhere
         self.values = _InUnit if int(sha256(seed.encode()).hexdigest(), 16) % 2 else Nudged
@@ -139,6 +143,8 @@ class _Place:
             wrong = self._run({call: other})
             if not wrong.false:
                 continue
+            if use not in self.further and not self._meets(call, wrong):
+                return NO
             if use in self.rows:
                 return BY_DEFINITION
             found = GOAL
@@ -154,6 +160,41 @@ class _Place:
                     if right.outside and right.asked < max(wrong.false):
                         return BY_DEFINITION
         return found
+
+    def _meets(self, call: Call, wrong: _Replaced) -> bool:
+        """Whether every goal is true with a value of the definition as this use's result; true where none is of its
+        kind.
+
+        wrong: a run with another result; a call of the definition that takes it is none of the statement alone.
+        """
+        base, result = self.base, self.base.found[call]
+        calls = [m for m in base.definitions if full_name(m[0]) == self.meant and m in base.found]
+        calls = [m for m in calls if m in wrong.definitions]
+        here = [m for m in calls if m[1] == call[1]]
+        if calls and not here and kinds(calls[0][0]) == kinds(call[0]):
+            return False  # taking the same kinds of arguments, it is meant for the same ones
+        given = leaves(call[1])
+        own = [m for m in calls if all(value in given for value in leaves(m[1]))]
+        values = [base.found[m] for m in here or own or calls]
+        fit = [new for value in values for new in _with_value(result, value)]
+        return not fit or any(not self._run({call: new}).false for new in fit)
+
+
+def kinds(function: Callable[..., Any]) -> tuple[list[Any], Any]:
+    """The kinds of a function's arguments, in order, and of its result."""
+    hints = get_type_hints(function)
+    return [hints.get(name) for name in inspect.signature(function).parameters], hints.get("return")
+
+
+def _with_value(result: Any, value: Any) -> Iterator[Any]:
+    """The result with this value in its place, or in that of a part of its kind."""
+    if _shape(result) == _shape(value):
+        yield value
+    elif isinstance(result, tuple):
+        for k, part in enumerate(result):
+            for new in _with_value(part, value):
+                parts = [*result[:k], new, *result[k + 1 :]]
+                yield type(result)(*parts) if hasattr(result, "_fields") else tuple(parts)
 
 
 @dataclass

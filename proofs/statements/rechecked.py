@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import ast
 import dataclasses
+import sys
 import types
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Union, get_args, get_origin, get_type_hints
@@ -32,8 +33,9 @@ def rechecked_by(entry: Entry) -> tuple[str, ...]:
     if entry.kind != "driver" or not isinstance(function, types.FunctionType):
         return ()
     node = _definition(function)
-    if node is None or not _is_fixed(_result(function)):
-        return ()
+    own = vars(sys.modules[function.__module__]).get(function.__name__) is function
+    if node is None or not own or not _is_fixed(_result(function)):
+        return ()  # what stands under its name is not what is written, or it may change after a check
     reader = _Reader(node, function.__globals__)
     reader.block(node.body, {})
     return tuple(sorted(frozenset.intersection(*reader.results))) if reader.results else ()
@@ -60,9 +62,13 @@ class _Reader:
                 case ast.Raise():
                     return None
                 case ast.If(test=test, body=yes, orelse=no):
+                    # what the condition binds may have been accepted before
+                    bound = _bound(test)
+                    now = _without(now, bound)
+                    true, false = put_to(test, self.scope), put_to(_denied(test), self.scope)
                     ways = (
-                        self.block(yes, _more(now, put_to(test, self.scope))),
-                        self.block(no, _more(now, put_to(_denied(test), self.scope))),
+                        self.block(yes, _more(now, _without(true, bound))),
+                        self.block(no, _more(now, _without(false, bound))),
                     )
                     open_ways = [way for way in ways if way is not None]
                     if not open_ways:
@@ -119,7 +125,7 @@ def put_to(test: ast.expr, scope: Mapping[str, Any], depth: int = 0) -> dict[str
             return dict.fromkeys(_names(over), kernels) if kernels else {}
         case ast.Call(func=ast.Name(id=name), args=args, keywords=[]):
             kernels = _yes_of(scope.get(name), depth)
-            names = frozenset().union(*map(_names, args))
+            names = frozenset().union(*map(_handed, args))
             return dict.fromkeys(names, kernels) if kernels else {}
     return {}
 
@@ -219,7 +225,9 @@ def _definition(function: Callable[..., Any]) -> ast.FunctionDef | None:
         return None
     if not isinstance(node, ast.FunctionDef):
         return None
-    return None if any(isinstance(n, ast.Yield | ast.YieldFrom) for n in ast.walk(node)) else node
+    # an inner function may change a name that was checked, and another one a name of the module
+    no = (ast.Yield, ast.YieldFrom, ast.Global, ast.Nonlocal)
+    return None if any(isinstance(n, no) for n in ast.walk(node)) else node
 
 
 def _arguments(node: ast.FunctionDef) -> Names:
@@ -258,6 +266,20 @@ def _bodies(statement: ast.stmt) -> list[list[ast.stmt]]:
 
 def _names(node: ast.AST) -> Names:
     return frozenset(n.id for n in ast.walk(node) if isinstance(n, ast.Name))
+
+
+def _handed(argument: ast.expr) -> Names:
+    """The names whose values an argument hands on; not those from which it computes another value."""
+    match argument:
+        case ast.Name(id=name):
+            return frozenset([name])
+        case ast.Starred(value=inner) | ast.Attribute(value=inner):
+            return _handed(inner)
+        case ast.Tuple(elts=parts) | ast.List(elts=parts):
+            return frozenset().union(*map(_handed, parts))
+        case ast.ListComp(elt=each, generators=[ast.comprehension(iter=over, ifs=[]) as loop]):
+            return _handed(over) if _handed(each) & _bound(loop.target) else NOBODY
+    return NOBODY
 
 
 def _denied(test: ast.expr) -> ast.expr:

@@ -19,11 +19,12 @@ import z3
 from cratous.core.kernel import REGISTRY, Fold, qualified
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.closed import TRUE
+from cratous.proofs.engine.lemma_calls import hangs_on_calls
 from cratous.proofs.engine.lift import LiftError
 from cratous.proofs.engine.solver_order import check
 from cratous.proofs.engine.symbolic import SymBool, SymInt, SymMask, SymReal, _raw
 from cratous.proofs.engine.terms import free_names, free_values, fresh, known, leaves
-from cratous.proofs.engine.theorem_files import FOLDER, load_claim
+from cratous.proofs.engine.theorem_files import FOLDER, load_claim, package_of
 from cratous.proofs.statements import sentences
 from cratous.proofs.statements.closed_definitions import (
     Closed,
@@ -79,6 +80,11 @@ def _unknown(name: str, kind: Any) -> Any:
     raise TypeError(f"{name} gives {kind}, of which there is no arbitrary value")
 
 
+def _equal(one: z3.ExprRef, other: z3.ExprRef) -> bool:
+    """Whether two written values are equal: an integer may stand for a real."""
+    return str(z3.simplify(one)) == str(z3.simplify(other))
+
+
 def _is_number(value: Any) -> bool:
     return isinstance(value, int | float | Fraction)
 
@@ -95,7 +101,7 @@ class Outline(Claim):
     looked_at: dict[int, tuple[z3.ExprRef, frozenset[str]]] = field(default_factory=dict)
     arguments: dict[Function, list[tuple[Any, ...]]] = field(default_factory=dict)
     made_of: dict[str, frozenset[Function]] = field(default_factory=dict)
-    evaluated: dict[Function, list[tuple[str, ...]]] = field(default_factory=dict)
+    evaluated: dict[Function, list[tuple[tuple[str, ...], Any]]] = field(default_factory=dict)
     written: dict[Use, tuple[str, ...]] = field(default_factory=dict)
     used_in: dict[str, frozenset[Use]] = field(default_factory=dict)
     counted: dict[str, int] = field(default_factory=dict)
@@ -152,8 +158,9 @@ class Outline(Claim):
         terms = [known(leaf) for leaf in leaves(args)]
         self.arguments.setdefault(function, []).append(args)
         if args and all(map(_is_number, leaves(args))):
-            self.evaluated.setdefault(function, []).append(tuple(str(t) for t in terms))
-            return function(*args)
+            said = function(*args)
+            self.evaluated.setdefault(function, []).append((tuple(map(str, terms)), said))
+            return said
         key = (function, tuple(term.get_id() for term in terms))
         if key not in self.met:
             name = f"{full_name(function)}#{len(self.met)}"
@@ -203,14 +210,16 @@ class Outline(Claim):
         names = (kernel,) if fold is None else tuple(map(qualified, fold.kernels))
         return frozenset(use for use in found if use[0] in names)
 
-    def rows(self, uses: Iterable[Use]) -> set[str]:
-        """The definitions that were evaluated at literals of these uses."""
+    def rows(self, uses: Iterable[Use], value: z3.ExprRef | None = None) -> set[str]:
+        """The definitions that were evaluated at literals of these uses; value: and gave it, or a record with it."""
         written = [set(self.written.get(use, ())) for use in uses]
         return {
             full_name(function)
             for function, points in self.evaluated.items()
+            for point, said in points
             if in_spec(function)
-            and any(set(point) and set(point) <= row for point in points for row in written)
+            and any(set(point) and set(point) <= row for row in written)
+            and (value is None or any(_equal(known(leaf), value) for leaf in leaves(said)))
         }
 
     def folds(self) -> list[Fold[Any]]:
@@ -288,7 +297,11 @@ def relations(name: str, folder: Path = FOLDER) -> Relations:
     claim, whole = outline(name, folder)
     if not whole:  # only the names that it mentions are known
         named = _named_in(load_claim(name, folder)[0])
-        return Relations(named, NONE, NONE, NONE, tuple(sorted(set(claim.lemmas))))
+        return Relations(named, NONE, NONE, NONE, _lemmas(claim, folder))
+    used = frozenset(full_name(f) for f in claim.arguments if in_spec(f))
+    if claim.asked and hangs_on_calls(name, folder):
+        # its goals are made of the calls that it meets, and this reading meets others
+        return Relations(used, NONE, NONE, NONE, _lemmas(claim, folder))
     found: dict[str, set[tuple[str, str]]] = {"together": set(), "follows": set(), "leads": set()}
     uses: set[tuple[str, str, str, int]] = set()
     for number, owed in enumerate(claim.obligations):
@@ -300,14 +313,23 @@ def relations(name: str, folder: Path = FOLDER) -> Relations:
                     found[how].add(pair)
                     held = {(*pair, *use) for use in claim.uses_of(pair[0], said)}
                     uses |= held
-    used = frozenset(full_name(f) for f in claim.arguments if in_spec(f))
     pairs = {how: frozenset(some) for how, some in found.items()}
-    lemmas = tuple(sorted(set(claim.lemmas)))
     says = sentences.sentence(claim.as_stated())
     plain = unconditional(claim, uses)
     return Relations(
-        used, lemmas=lemmas, uses=frozenset(uses), plain=plain, statement=says, **pairs
+        used,
+        lemmas=_lemmas(claim, folder),
+        uses=frozenset(uses),
+        plain=plain,
+        statement=says,
+        **pairs,
     )
+
+
+def _lemmas(claim: Outline, folder: Path) -> tuple[str, ...]:
+    """The theorems that it depends on; those of its own home by their plain names, however it calls them."""
+    own = f"{package_of(folder)}."
+    return tuple(sorted({name.removeprefix(own) for name in claim.lemmas}))
 
 
 def _says(claim: Outline, number: int, function: str) -> bool:

@@ -6,13 +6,16 @@ leave fewer, so such goals are analysed further (`decided`).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import inspect
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Protocol
 
 import z3
 
+from cratous.core.kernel import qualified
 from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.engine.terms import free_names, known, leaves
+from cratous.proofs.statements.closed_definitions import full_name
 from cratous.proofs.statements.premise_and_goal import sides
 
 Use = tuple[str, int]
@@ -24,7 +27,7 @@ class Outline(Protocol):
     """The interface needed from a statement read with all functions closed (`relations.Outline`).
 
     results: for each unknown value that is a kernel's result, or a field of one: the kernel and its uses; meant: for
-    each that is a definition's result: the definition; given_to: for each, the arguments; of_folds: uses by `c.fold`.
+    each that is a definition's result: the definition; given_to: for each, the arguments; arguments: of each function, those of all its calls; of_folds: uses by `c.fold`.
     Values within arguments do not count.
     """
 
@@ -34,9 +37,10 @@ class Outline(Protocol):
     results: dict[str, set[tuple[str, Use]]]
     meant: dict[str, str]
     given_to: dict[str, tuple[Any, ...]]
+    arguments: dict[Callable[..., Any], list[tuple[Any, ...]]]
 
-    def rows(self, uses: Iterable[Use]) -> set[str]:
-        """The definitions that were evaluated at literals of these uses."""
+    def rows(self, uses: Iterable[Use], value: z3.ExprRef | None = None) -> set[str]:
+        """The definitions that were evaluated at literals of these uses; value: and gave it."""
         ...
 
     def uses_in(self, term: z3.ExprRef) -> frozenset[Use]:
@@ -47,8 +51,10 @@ class Outline(Protocol):
 def unconditional(claim: Outline, uses: Iterable[Held]) -> frozenset[Held]:
     """The uses whose result, or a field of it, a goal equates with its definition unconditionally.
 
-    Only the plainest forms count: a result equals a term of the definition's results alone, or a number that one was
-    evaluated to; or the definition is true of it; or an induction (`_of_induction`).
+    Only the plainest forms count: a result equals the definition's own, or is true where all, or some, of them are, of the
+    same arguments where both take the same kinds of them; or a number that one was evaluated to; or an induction (`_of_induction`). An equality with a term of
+    its results (its negation, twice its value) is no such form: with the definition in the kernel's place it would be
+    false. Nor is a definition that is true of the result: it may be true of any.
     """
     wanted = frozenset(uses)
     found = {held for held in wanted if _of_induction(claim, held[2:])}
@@ -91,26 +97,50 @@ def _within(claim: Outline, term: z3.ExprRef) -> set[str]:
 
 def _said(claim: Outline, conclusion: z3.BoolRef) -> Iterator[Held]:
     term = _plain(conclusion)
-    yield from _of_definition(claim, term)
     if not z3.is_eq(term):
-        yield from _of_row(claim, term)
+        yield from _of_row(claim, term, z3.BoolVal(not z3.is_not(conclusion)))
         return
-    for one, other in (map(_plain, term.children()), map(_plain, reversed(term.children()))):
-        names = free_names(other)
-        if not names:
-            yield from _of_row(claim, one)
-        meant = {claim.meant.get(name, "") for name in names}
-        # if another definition, or an argument, takes part, it may be a condition
-        if z3.is_const(one) and len(meant) == 1 and "" not in meant:
+    for one, other in (term.children(), reversed(term.children())):
+        if not free_names(other):
+            yield from _of_row(claim, one, other)
+        values = _values(other)
+        meant = {claim.meant.get(str(value), "") for value in values}
+        if z3.is_const(one) and len(meant) == 1 and "" not in meant and not z3.is_not(conclusion):
             (only,) = meant
             for kernel, use in claim.results.get(str(one), ()):
                 # a definition of the kernel's own result may hold for every result
-                if use not in claim.uses_in(other):
+                own = use in claim.uses_in(other)
+                if not own and all(_of_the_same(claim, use, value) for value in values):
                     yield kernel, only, *use
 
 
+def _values(term: z3.ExprRef) -> list[z3.ExprRef]:
+    """The value that a term is, or of which it says that all, or that some, are true."""
+    if z3.is_and(term) or z3.is_or(term):
+        return [value for part in term.children() for value in _values(part)]
+    return [term]
+
+
+def of_definition(claim: Outline, meant: str) -> frozenset[Use]:
+    """Uses of whose result a goal says, without a condition, that this definition is true of it."""
+    found: set[Use] = set()
+    for owed in claim.obligations:
+        for given, conclusion in sides(owed.goal) if owed.kind == "goal" else ():
+            if not given:
+                found |= {h[2:] for h in _of_definition(claim, conclusion) if h[1] == meant}
+    return frozenset(found)
+
+
+def _of_the_same(claim: Outline, use: Use, value: z3.ExprRef) -> bool:
+    """Whether a definition's value is of the arguments of a use; true where it takes other kinds than the kernel."""
+    ours = [known(leaf) for leaf in leaves(dict(claim.stated_uses)[use])]
+    theirs = [known(leaf) for leaf in leaves(claim.given_to[str(value)])]
+    kinds = [[term.sort() for term in terms] for terms in (ours, theirs)]
+    return kinds[0] != kinds[1] or all(a.eq(b) for a, b in zip(ours, theirs, strict=True))
+
+
 def _of_definition(claim: Outline, term: z3.BoolRef) -> Iterator[Held]:
-    """A definition that is true, or false, of results passed to it."""
+    """A definition that is true of results passed to it."""
     if z3.is_const(term) and str(term) in claim.meant:
         for name in {str(known(leaf)) for leaf in leaves(claim.given_to[str(term)])}:
             for kernel, use in claim.results.get(name, ()):
@@ -139,11 +169,45 @@ def by_way_of(claim: Outline, meant: str) -> frozenset[Use]:
     return frozenset(found)
 
 
-def _of_row(claim: Outline, term: z3.ExprRef) -> Iterator[Held]:
-    """For a result that is compared with a number: the definitions evaluated for its use."""
+def of_further_values(claim: Outline, use: int, meant: str) -> bool:
+    """Whether the statement has this definition of some of the use's arguments beside a value that they do not give.
+
+    Then it says that THERE IS such a value, or none: a kernel that is true where there is none denies it. The argument
+    of the definition that takes the value is none of the kernel's, by its name.
+    """
+    own, args = claim.stated_uses[use]
+    given = _names_of(claim, args)
+    named = {name for f in claim.arguments if qualified(f) == own[0] for name in _parameters(f)}
+    for function, calls in claim.arguments.items():
+        for call in calls if full_name(function) == meant else ():
+            names = {
+                p: _names_of(claim, v) for p, v in zip(_parameters(function), call, strict=True)
+            }
+            further = [p for p, some in names.items() if not some <= given and p not in named]
+            ours = [p for p, some in names.items() if some and some <= given]
+            if further and ours and own not in claim.uses_in(_all(call)):
+                return True
+    return False
+
+
+def _parameters(function: Callable[..., Any]) -> list[str]:
+    return list(inspect.signature(function).parameters)
+
+
+def _names_of(claim: Outline, value: Any) -> set[str]:
+    return set().union(*[_within(claim, known(leaf)) for leaf in leaves(value)])
+
+
+def _all(value: Any) -> z3.BoolRef:
+    """A term that is made of all parts of a value."""
+    return z3.And(*[known(leaf) == known(leaf) for leaf in leaves(value)])
+
+
+def _of_row(claim: Outline, term: z3.ExprRef, value: z3.ExprRef) -> Iterator[Held]:
+    """For a result that equals a number: the definitions that give it where they were evaluated for its use."""
     if z3.is_const(term):
         for kernel, use in claim.results.get(str(term), ()):
-            yield from ((kernel, meant, *use) for meant in claim.rows([use]))
+            yield from ((kernel, meant, *use) for meant in claim.rows([use], value))
 
 
 def _plain(term: z3.ExprRef) -> z3.ExprRef:

@@ -184,12 +184,49 @@ def a_record_that_claims(x: int) -> Found | Nothing:
     return Nothing(str(x))
 
 
+def changed_by_an_inner_function(x: int) -> int | None:
+    found = x + 1
+
+    def change() -> None:
+        nonlocal found
+        found = -9
+
+    if not runs_forward(0, found):
+        return None
+    change()
+    return found
+
+
+def bound_by_the_condition(x: int) -> int | None:
+    found = x + 1
+    if runs_forward(0, found) and (found := x - 9):
+        return found
+    return None
+
+
+def another_is_computed(x: int) -> int | None:
+    found = x - 9
+    if runs_forward(0, found * found):
+        return found
+    return None
+
+
+def under_its_name(x: int) -> int | None:
+    found = x + 1
+    if runs_forward(0, found):
+        return found
+    return None
+
+
+REPLACED, under_its_name = under_its_name, unchecked
+
 GOOD = {where_it_holds: FORWARD, refuses_first: FORWARD, the_first_of_several: FORWARD,
         of_rows: HOLDS, with_a_refusal: FORWARD}  # fmt: skip
 BAD = (
     unchecked, another_value, changed_since, on_one_way, denied, either, a_constant, says_yes,
     can_be_changed, can_be_changed_too, of_unknown_type, by_its_own_judge, in_the_next_round,
-    another_is_asked, a_record_that_claims,
+    another_is_asked, a_record_that_claims, changed_by_an_inner_function, bound_by_the_condition,
+    another_is_computed, REPLACED,
 )  # fmt: skip
 
 
