@@ -22,17 +22,30 @@ TURNED = {z3.Z3_OP_GE: z3.Z3_OP_LE, z3.Z3_OP_GT: z3.Z3_OP_LT}
 """Comparisons that are hashed with their sides exchanged: a >= b as b <= a."""
 
 
+Known = dict[int, tuple[z3.ExprRef, str]]
+"""Hashes by the term's id; the term is kept alive so that its id stays unique."""
+_GIVEN: Known = {}
+"""Hashes of the terms that were asked for, in the main context."""
+_PARTS: Known = {}
+"""Hashes of the simplified terms and of their subterms, in the main context."""
+
+
 def canonical(term: z3.ExprRef) -> str:
     """The hash of the term's simplified form."""
-    return _hash(z3.simplify(term, som=True), {})
+    if term.ctx is not z3.main_ctx():
+        return _hash(z3.simplify(term, som=True), {})
+    found = _GIVEN.get(term.get_id())
+    if found is None:
+        found = _GIVEN[term.get_id()] = term, _hash(z3.simplify(term, som=True), _PARTS)
+    return found[1]
 
 
-def _hash(term: z3.ExprRef, known: dict[int, str]) -> str:
+def _hash(term: z3.ExprRef, known: Known) -> str:
     number = term.get_id()
     if number not in known:
         below = [_hash(child, known) for child in term.children()]
-        known[number] = _node(term, below)
-    return known[number]
+        known[number] = term, _node(term, below)
+    return known[number][1]
 
 
 def _node(term: z3.ExprRef, below: list[str]) -> str:

@@ -22,6 +22,7 @@ import z3
 
 from cratous.core.kernel.sources import is_root
 from cratous.proofs.engine.cpu_limit import ends_within
+from cratous.proofs.engine.models import Models
 from cratous.proofs.engine.symbolic import (
     PATHS,
     LiftError,
@@ -86,6 +87,7 @@ _LIFTING: list[Callable[..., Any]] = []
 
 
 _ASKED: dict[tuple[int, ...], tuple[list[z3.BoolRef], bool]] = {}
+_MODELS = Models()
 
 
 _NAMES: dict[int, tuple[z3.ExprRef, frozenset[str]]] = {}
@@ -124,12 +126,16 @@ def _feasible(conditions: list[z3.BoolRef]) -> bool:
     """False only if the last condition is known to contradict the others; each question is asked once."""
     conditions = _relevant(conditions)
     key = tuple(sorted({condition.get_id() for condition in conditions}))
+    if key not in _ASKED and _MODELS.satisfy(conditions):
+        _ASKED[key] = (conditions, True)
     if key not in _ASKED:
         solver = z3.Solver()
         solver.set("rlimit", PRUNE_RLIMIT)
         solver.add(*conditions)
         with ends_within(PRUNE_CPU_S):
             answer = solver.check()
+        if answer == z3.sat:
+            _MODELS.keep(solver.model())
         # the terms are kept alive so that their ids stay unique
         _ASKED[key] = (conditions, bool(answer != z3.unsat))
     return _ASKED[key][1]

@@ -72,6 +72,18 @@ def test_what_does_not_commute_keeps_its_order():
     assert canonical(z3.Int("a")) != canonical(a)
 
 
+def test_a_name_that_was_read_once_is_that_of_its_term_alone():
+    a, b = z3.Reals("a b")
+    names = {canonical(a * number + b) for number in range(2, 200)}  # each term is freed at once
+    assert len(names) == 198
+    # terms of another context have the same numbers
+    other = z3.Context()
+    x, y = z3.Real("x", other), z3.Real("y", other)
+    foreign = [canonical(x * number + y) for number in range(2, 200)]
+    assert len({*names, *foreign}) == 2 * 198
+    assert canonical(2 * a + b) == canonical((2 * a + b).translate(other)) != foreign[0]
+
+
 def test_a_literal_is_of_its_argument_s_type():
     zero, one = SymReal(z3.RealVal(0)), SymReal(z3.RealVal(1))
     assert normal(0, float) == normal(zero, float)

@@ -17,6 +17,7 @@ import z3
 from cratous.proofs import ledger, second_solver
 from cratous.proofs.engine import cpu_limit, lift, prover, solver_order, worker_processes
 from cratous.proofs.engine.cache import Answer, Cache
+from cratous.proofs.engine.models import Models
 from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.ledger.report_formats import failure_text
 from cratous.spec.errors import BadInput
@@ -151,6 +152,7 @@ def test_a_theorem_whose_paths_are_not_found_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(lift.z3, "Solver", Deaf)
+    monkeypatch.setattr(lift, "_MODELS", Models())
     with pytest.raises(BadInput, match="its paths take too long to find") as refused:
         _proved(tmp_path, of_a_margin=PATHS)
     assert refused.value.where.endswith("of_a_margin.py")
