@@ -40,7 +40,7 @@ class Models:
 
 
 def _is_true(model: z3.ModelRef, condition: z3.BoolRef) -> bool:
-    return z3.is_true(model.eval(condition, model_completion=True))
+    return bool(z3.is_true(model.eval(condition, model_completion=True)))
 
 
 def _is_short(value: object) -> bool:

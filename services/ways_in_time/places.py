@@ -125,8 +125,15 @@ def _beside_traffic(
         near = later(other, best_s)
         p, v = near.position, near.velocity
         fast = math.hypot(v.north_m_s, v.east_m_s)
-        un, ue = (v.north_m_s / fast, v.east_m_s / fast) if fast > 0 else (north, east)
-        for a, b in ((un, ue), (-un, -ue), (-ue, un), (ue, -un)):
+        along_north, along_east = (
+            (v.north_m_s / fast, v.east_m_s / fast) if fast > 0 else (north, east)
+        )
+        for a, b in (
+            (along_north, along_east),
+            (-along_north, -along_east),
+            (-along_east, along_north),
+            (along_east, -along_north),
+        ):
             yield p.north_m + away_m * a, p.east_m + away_m * b
 
 
