@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import gc
 import json
 import shutil
 import sqlite3
@@ -18,9 +16,6 @@ import pytest
 
 from cratous import __version__
 from cratous.services.cli import COMMANDS, main
-from cratous.services.cli import run as running
-from cratous.services.cli.job import Settings
-from cratous.spec.errors import BadInput
 
 ROOT = Path(__file__).resolve().parents[2]
 CROSSING = ROOT / "examples" / "crossing" / "mission.yaml"
@@ -39,36 +34,6 @@ def flown(fly_once: Callable[[Path], Path]) -> Path:
 
 def report_of(folder: Path) -> dict[str, Any]:
     return dict(json.loads((folder / "report.json").read_text(encoding="utf-8")))
-
-
-@pytest.mark.parametrize("ends", [None, BadInput("wrong"), KeyboardInterrupt()])
-def test_after_a_flight_garbage_is_collected_as_before(
-    ends: BaseException | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    before, meanwhile = gc.get_threshold(), []
-
-    def fly(*_: object, **_gate: object) -> dict[str, Any]:
-        meanwhile.append(gc.get_threshold()[0])
-        if ends is not None:
-            raise ends
-        return {}
-
-    monkeypatch.setattr(running, "run_mission", fly)
-    with pytest.raises(type(ends)) if ends is not None else contextlib.nullcontext():
-        running.run_one(CROSSING, 0, tmp_path, Settings(), True)
-    assert meanwhile == [running.COLLECTED_AT]
-    assert gc.get_threshold() == before
-
-
-@pytest.mark.parametrize(("words", "at"), [(["version"], 1_000_000), (["uxas", "-h"], 100_000)])
-def test_a_process_that_may_run_for_days_collects_garbage_more_often(
-    words: list[str], at: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    set_to: list[int] = []
-    monkeypatch.setattr(gc, "set_threshold", lambda first, *_: set_to.append(first))
-    monkeypatch.setattr(sys, "argv", ["cratous", *words])
-    assert main() == 0
-    assert set_to == [at]
 
 
 def test_version(run: Run) -> None:

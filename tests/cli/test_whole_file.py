@@ -185,6 +185,7 @@ KEPT = {
     "proofs/ledger/text_cache.py": "texts, renamed when whole, in the private cache",
     "services/startup/sample_missions.py": "a mission in a temporary folder",
     "services/startup/warm.py": "a mission in a temporary folder",
+    "services/startup/gate_process.py": "a pipe to the parent process",
     "services/results/folder.py": "inside the hidden folder of a run",
     "services/logs/log.py": "inside the hidden folder of a run; renamed when whole",
     "services/logs/export.py": "inside `replacing`",
