@@ -25,6 +25,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol
 
+from cratous.core.authority.timeliness import in_time
 from cratous.spec.records import replace
 
 
@@ -217,7 +218,7 @@ class Bus:
         delivered = 0
         while self._queue:
             envelope = self._queue.popleft()
-            if envelope.time_ms != self.now_ms:
+            if not in_time(envelope.time_ms, self.now_ms, 0):
                 envelope = replace(envelope, time_ms=self.now_ms)
             delivered += 1
             for listener in self._taps:

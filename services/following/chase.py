@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.kernel import Vec2
+from cratous.core.requirements.verdict import reaches
 from cratous.core.routing.dubins import cut, cut_length_m, dubins, pose_after
 from cratous.core.routing.loiter_discs import broken_by
 from cratous.core.tasks.stations import in_ring, outruns
@@ -90,7 +91,7 @@ def chase(
         way_m = cut_length_m(dubins(gate, circle(seconds)[1], wide_m))
         last_m = min(way_m, slow_m)
         left_s = (way_m - last_m) / fast + last_m / flyer.speed_m_s - seconds
-        return Look(left_s > 0, left_s)
+        return Look(not reaches(0.0, left_s), left_s)
 
     if _near(here, circle(0.0)[0], wide_m):
         return None

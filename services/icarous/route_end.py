@@ -19,6 +19,7 @@ from cratous.core.avoidance.manoeuvre import Way, looked_at
 from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s, meets
 from cratous.core.avoidance.resolution import Scene, first_zone_s
 from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
+from cratous.core.requirements.verdict import reaches
 from cratous.services.icarous.messages import Sensed
 from cratous.spec.mission import Position, WellClear, Zone
 
@@ -148,12 +149,12 @@ def _hold_farther(
     for radii in FARTHER:
         on_s = radii * margin / sensed.ability.turn_rate_rad_s
         left_s = beyond.duration_s - on_s
-        on = level if left_s <= 0.0 else level._replace(duration_s=on_s)
+        on = level if reaches(0.0, left_s) else level._replace(duration_s=on_s)
         if any(meets((on,), other, volume) for other in scene.intruders for volume in volumes):
             return None
         if first_zone_s((on,), scene.zones, ZONE_M) is not None:
             return None
-        if left_s <= 0.0:
+        if reaches(0.0, left_s):
             return on, ()
         start_s, there = beyond.start_s + on_s, after(level, on_s)
         later = level._replace(start_s=start_s, duration_s=left_s, position=there)

@@ -23,6 +23,7 @@ import numpy as np
 from cratous.bridge.text_protocol import Message, RouteEnd, RoutePoint, RouteRequest, RouteStart
 from cratous.core.geofence.distance import FARTHER, edge_against
 from cratous.core.kernel import Vec2
+from cratous.core.requirements.verdict import reaches
 from cratous.core.routing.bulk import FOUND
 from cratous.core.routing.visibility import Roadmap, route, routes, why_not
 from cratous.core.routing.wind import holds_in_wind
@@ -75,11 +76,12 @@ class Clock:
         if asked:
             self._longest_s = max(self._longest_s, now - self._last_s)
         self._last_s, self._asked = now, asked + 1
-        return bool(asked) and now + self._longest_s > self._begun_s + BUDGET_S
+        ends = now + self._longest_s
+        return bool(asked) and not reaches(self._begun_s + BUDGET_S, ends)
 
     def overdue(self) -> bool:
         """Whether the time is over."""
-        return self._now_s() > self._begun_s + BUDGET_S
+        return not reaches(self._begun_s + BUDGET_S, self._now_s())
 
 
 class Planner(NamedTuple):

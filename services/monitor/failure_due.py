@@ -15,7 +15,7 @@ from typing import Any
 
 from cratous.core.authority.failure import Asked, Seen
 from cratous.core.authority.failure_due import failure_due
-from cratous.core.authority.timeliness import lasted
+from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.kernel import qualified
 from cratous.services.assumptions.authority import has_it, reported
 from cratous.services.mission.landing import on_failure_of
@@ -101,7 +101,7 @@ class FailureDueWatch:
                 told.mode = int(body.Mode)
                 if told.mode in (FINAL, LANDED) and not told.over:
                     told.over = True
-                    if told.checked_ms != body.Time:
+                    if not in_time(told.checked_ms, body.Time, 0):
                         told.doubts.append(_unchecked(told.checked_ms, body.Time))
             case "TakeOffState":
                 told.on_ground &= int(body.Mode) <= ROLLING
@@ -130,7 +130,7 @@ class FailureDueWatch:
         if body.OnGround and not told.on_ground:
             wrong.append((now_ms, "its check has it on the ground after it took off"))
         both_over = lasted(body.Expiry, now_ms, 0) and lasted(hand.expiry_ms, now_ms, 0)
-        if body.Expiry != hand.expiry_ms and not both_over:
+        if not in_time(body.Expiry, hand.expiry_ms, 0) and not both_over:
             wrong.append((now_ms, "its check has another expiry than its certificate"))
         if told.flies and body.Flies and (body.Without, body.Without * body.Since) != hand.lack:
             wrong.append((now_ms, "its check and its certificates differ on whether one was found"))
@@ -151,7 +151,7 @@ class FailureDueWatch:
     def _between(self, told: Told, now_ms: int) -> None:
         """Note heartbeats without a check before this one."""
         before_ms = told.checked_ms
-        if before_ms < 0:
+        if told.checks == 1:
             first_ms = told.seen_ms[0] if told.seen_ms else 0
             before_ms = first_ms - self._beat_ms
         if not lasted(now_ms, before_ms + self._beat_ms, 0):
@@ -169,7 +169,7 @@ class FailureDueWatch:
         if told.over:
             return
         name, now_ms = body.Failure.name.lower(), body.Time
-        if told.checked_ms != now_ms:
+        if not in_time(told.checked_ms, now_ms, 0):
             told.doubts.append(f"it declared {name} at {now_ms / 1000:.2f} s without a check")
         elif told.waits != name:
             told.wrong.append((now_ms, f"{name} is declared, and {told.waits or 'none'} was due"))
@@ -183,7 +183,7 @@ class FailureDueWatch:
             if told.over:
                 continue
             last_ms = min(told.seen_ms[1] if told.seen_ms else body.Time, body.Time)
-            if told.checked_ms >= 0 and lasted(told.checked_ms + self._beat_ms, last_ms, 1):
+            if told.checks and lasted(told.checked_ms + self._beat_ms, last_ms, 1):
                 told.doubts.append(_unchecked(told.checked_ms, last_ms))
             told.doubts.extend(self._not_told(told, body.Outcome == FAILED))
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from cratous.core.authority.timeliness import in_time
+
 FOUND = ("Offered", "Refused")
 
 
@@ -51,7 +53,7 @@ class Certificates:
         self.surprises = body.Surprises
         if kind == "Offered":
             self.lacks = False
-        if body.Time != checked_ms or kind not in (*FOUND, "Missing"):
+        if not in_time(body.Time, checked_ms, 0) or kind not in (*FOUND, "Missing"):
             return
         self.answered = True
         if kind == "Missing":

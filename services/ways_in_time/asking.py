@@ -14,6 +14,7 @@ from typing import NamedTuple
 from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import Piece
 from cratous.core.permit.remainder import hold_at, hold_permits
+from cratous.core.requirements.verdict import reaches
 from cratous.core.ways_in_time.grid import Craft, Grid
 from cratous.core.ways_in_time.scene import Checks, Scene
 from cratous.core.ways_in_time.search import (
@@ -127,12 +128,13 @@ def _grid(asked: Asked, scene: Scene) -> Grid:
     least, most = ability.min_speed_m_s, ability.max_speed_m_s
     present = min(max(now.speed_m_s, least), most)
     speeds = asked.speeds_m_s or tuple(dict.fromkeys((present, least, most)))
-    if min(*speeds, now.speed_m_s) <= 0:
-        raise ValueError(f"a speed that is not positive: {min(*speeds, now.speed_m_s)} m/s")
+    slowest = min(*speeds, now.speed_m_s)
+    if reaches(0.0, slowest):
+        raise ValueError(f"a speed that is not positive: {slowest} m/s")
     lateral = now.speed_m_s * ability.turn_rate_rad_s
     craft = Craft(speeds, lateral, ability.acceleration_m_s2, ability.max_climb_m_s)
     start, speed = now.position, speeds[0]
-    layers = [alt for alt in asked.layers_m if alt >= ability.floor_m]
+    layers = [alt for alt in asked.layers_m if reaches(alt, ability.floor_m)]
     places = places_of(start, asked.goal, speed, craft.radius_m(speed), scene, layers)
     return Grid(now, places, craft, Checks(scene))
 

@@ -35,9 +35,3 @@ def claim(c: Claim) -> None:
         steers = c.define(authority_cycle.steers, does.cycle)
         c.show(c.same(steers, passes), f"{text}: what it steers passes the gate")
         c.show(after.epoch >= gate.epoch, f"{text}: no epoch comes back")
-
-    act, other = c.integer("any_act"), Gate(c.integer("o"), c.integer("e"), c.boolean("f"))
-    wished = c.use(gate_wished, gate, act)
-    c.show(c.define(authority_cycle.is_after_wish, gate, act, wished), "whatever it does")
-    another = c.define(authority_cycle.is_after_wish, gate, act, other)
-    c.show(c.implies(another, c.same(other, wished)), "and the gate can be no other")
