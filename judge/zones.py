@@ -129,24 +129,25 @@ def rows(mission: Mission, flown: dict[int, Track]) -> Iterator[Row]:
     """One row for each protected vehicle and zone."""
     for vehicle in mission.protected:
         for zone in mission.zones:
-            yield _row(vehicle, zone, flown[vehicle])
+            yield _row(vehicle, zone, flown[vehicle], mission.step_ms)
 
 
-def _row(vehicle: int, zone: Zone, track: Track) -> Row:
+def _row(vehicle: int, zone: Zone, track: Track, step_ms: int) -> Row:
     kind = "keep_in" if zone.keep_in else "keep_out"
     subject = ("zone", str(zone.id), str(vehicle))
     item = f"zone: {kind} {zone.id}, flight of vehicle {vehicle}"
-    # what becomes known between two states is known at the second
-    first = track.from_index(zone.from_ms)
+    moves = any(zone.velocity_m_s)
+    # what becomes known between two states is known at the second; what moves is known before, and the first leg counts
+    since_ms = zone.from_ms // step_ms * step_ms if moves else zone.from_ms
+    first = track.from_index(since_ms)
     # no leg follows the last state: what becomes known with it applies to no path
-    if first >= len(track.states) - (zone.from_ms > 0):
+    if first >= len(track.states) - (since_ms > 0):
         if track.states and not track.doubt:
             # the one check: the whole flight was before it
-            note = "the zone was not in force in flight" if any(zone.velocity_m_s) else NEVER
+            note = "the zone was not in force in flight" if moves else NEVER
             return Row("G1", subject, item, HOLDS, note, checks=1)
         return Row("G1", subject, item, UNKNOWN, track.doubt or "no position was logged")
-    fence, moves = Fence(zone), any(zone.velocity_m_s)
-    checks = 0
+    fence, checks = Fence(zone), 0
     for before, after in track.legs(first):
         if zone.over(before.time_ms):
             break  # a leg that begins before the zone ends is checked as a whole

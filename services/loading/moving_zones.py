@@ -115,18 +115,17 @@ def _of_zone(mission: Mission, k: int, zone: SweptZone, fault: Any) -> Iterator[
             f"{speed_m_s:g} m/s",
         )
     end_ms = mission.simulation.limit_ms
-    until_ms = end_ms if moving.until_ms is None else moving.until_ms
+    until_ms = end_ms if moving.until_ms is None else min(moving.until_ms, end_ms)
     if not runs_forward(moving.from_ms + 1, until_ms):
-        name, got = (
-            ("until_s", until_ms) if moving.until_ms is not None else ("from_s", moving.from_ms)
-        )
+        ends = moving.until_ms is not None and not runs_forward(moving.from_ms + 1, moving.until_ms)
+        name, got = ("until_s", until_ms) if ends else ("from_s", moving.from_ms)
         yield fault(
             f"{item}.{name}",
             f"zone {zone.id} is never in force",
             "from_s before until_s and before the end of the simulation",
             f"{got / 1000:g} s",
         )
-    last = _moved(moving, min(until_ms, end_ms))
+    last = _moved(moving, until_ms)
     if all(map(math.isfinite, (x for c in last for x in c))):
         far_m = max(math.hypot(*corner) for corner in last)
         if not all(disc_within(Vec2(*corner), 0, MAX_REACH_M) for corner in last):

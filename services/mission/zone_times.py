@@ -48,13 +48,16 @@ def zones_of(mission: Mission, end_ms: int) -> list[Bound[Zone]]:
 
 
 def judged_zones(mission: Mission, end_ms: int) -> list[Bound[Zone] | Bound[MovingZone]]:
-    """The zones that are guaranteed to be kept: as `zones_of`, but moving zones themselves, not their regions."""
+    """The zones that are guaranteed to be kept: as `zones_of`, but moving zones themselves, not their regions.
+
+    Of a leg during which a moving zone is in force for a part only the whole is judged: it begins and ends with a step.
+    """
     step_ms = mission.simulation.step_ms
     found: list[Bound[Zone] | Bound[MovingZone]] = [
         bound for bound in zones_of(mission, end_ms) if not isinstance(bound.zone, SweptZone)
     ]
     for moving in moving_zones(mission):
-        since_ms = -(-moving.from_ms // step_ms) * step_ms
+        since_ms = moving.from_ms // step_ms * step_ms
         until_ms = None if moving.until_ms is None else -(-moving.until_ms // step_ms) * step_ms
         if not since_ms or not runs_forward(end_ms, since_ms):
             found.append(Bound(moving, since_ms, until_ms))

@@ -41,10 +41,16 @@ def meeting_lines(mission: Mission, plan: Plan) -> list[str]:
 
 
 def _verdict(zone: MovingZone, vehicle: int, ways: list[tuple[PlanItem, Path, Path]]) -> Verdict:
-    checks, met_ms = 0, None
+    checks, met_ms, free_ms = 0, None, 0
     for item, transit, path in ways:
-        parts = [*_legs(transit, item.depart_ms, item.arrive_ms), *_wait(item)]
-        for leg, times_ms, radius_m in (*parts, *_legs(path, item.start_ms, item.end_ms)):
+        parts = [
+            *_stay(transit[0], free_ms, item.depart_ms),
+            *_legs(transit, item.depart_ms, item.arrive_ms),
+            *_wait(item, path[0]),
+            *_legs(path, item.start_ms, item.end_ms),
+        ]
+        free_ms = item.end_ms
+        for leg, times_ms, radius_m in parts:
             over = zone.until_ms is not None and runs_forward(zone.until_ms, times_ms[0])
             if over or not runs_forward(zone.from_ms, times_ms[1]):
                 continue
@@ -85,7 +91,11 @@ Part = tuple[Leg, tuple[int, int], float | None]
 def _legs(way: Path, begin_ms: int, end_ms: int) -> Iterator[Part]:
     """The legs of a way at a uniform speed in parts of PART_MS, each from the millisecond before to that after."""
     lengths = [math.dist(p[:2], q[:2]) for p, q in pairwise(way)]
-    whole = math.fsum(lengths) or 1.0
+    whole = math.fsum(lengths)
+    if not whole:
+        for p, q in pairwise((*way, way[-1])):  # above or below each other: each all the time
+            yield (p, q), (begin_ms, end_ms), None
+        return
     shares = [0.0, *(gone / whole for gone in accumulate(lengths))]
     for (p, q), (first, last) in zip(pairwise(way), pairwise(shares), strict=True):
         from_ms, to_ms = (begin_ms + share * (end_ms - begin_ms) for share in (first, last))
@@ -100,7 +110,16 @@ def _along(p: Position, q: Position, share: float) -> Position:
     return Position(*(a + share * (b - a) for a, b in zip(p, q, strict=True)))
 
 
-def _wait(item: PlanItem) -> Iterator[Part]:
-    if item.hold is not None and item.wait_ms:
+def _stay(at: Position, begin_ms: int, end_ms: int) -> Iterator[Part]:
+    """Where nothing is planned between two items."""
+    if runs_forward(begin_ms + 1, end_ms):
+        yield (at, at), (begin_ms, end_ms), None
+
+
+def _wait(item: PlanItem, here: Position) -> Iterator[Part]:
+    """The circle of a wait, or the place before a path that begins later, from the arrival to the start."""
+    if item.hold is None:
+        yield from _stay(here, item.arrive_ms, item.start_ms)
+    elif runs_forward(item.arrive_ms + 1, item.start_ms):
         at = Position(item.hold.north_m, item.hold.east_m, item.hold.alt_m)
-        yield (at, at), (item.arrive_ms, item.arrive_ms + item.wait_ms), item.hold.radius_m
+        yield (at, at), (item.arrive_ms, item.start_ms), item.hold.radius_m

@@ -73,6 +73,14 @@ def _in_a_change(data: Data) -> None:
         (lambda d: zone(d).pop("velocity_m_s"), "does not move"),
         (lambda d: zone(d).update(velocity_m_s=[-250, 0]), "velocity_m_s"),
         (lambda d: zone(d).update(from_s=300), "never in force"),
+        # in force only after the simulation's limit
+        (
+            lambda d: (
+                zone(d).update(from_s=5000, until_s=6000),
+                d.update(simulation={"limit_s": 3600}),
+            ),
+            "from_s: zone 7 is never in force",
+        ),
         (lambda d: (zone(d).pop("until_s"), zone(d).update(velocity_m_s=[-20, 0])), "leaves the area"),
         (lambda d: d.update(changes=[{"at_s": 9, "zone_ends": 7}]), "its end is told"),
         (_in_a_change, "becomes known in flight"),
