@@ -83,12 +83,12 @@ def _faults(
         check, after = events[start], events[start + 1 : end]
         grounded = bool(check.data["OnGround"].flag)
         yield from _told(hand, check, ground and hand.flown_ms is None)
-        due = _due(mission, asked, check)
-        if (due or "") != _said_due(check):
-            yield (
-                check.time_ms,
-                f"its check says {_said_due(check) or 'none'}, due is {due or 'none'}",
-            )
+        kind, by_ms = _due(mission, asked, check)
+        found, found_ms = check.data["Failure"].text, check.data["DueBy"].whole
+        if (found, found_ms) != (kind or "NotDeclared", by_ms):
+            own = f"due is {kind or 'none'} by {by_ms} ms"
+            yield check.time_ms, f"its check says {found} by {found_ms} ms, {own}"
+        due = kind if by_ms <= check.time_ms else ""
         said = next((one for one in after if one.kind == "FailureState"), None)
         if due and (said is None or said.time_ms != check.time_ms):
             yield check.time_ms, f"{due} was due and was not declared"
@@ -120,25 +120,21 @@ def _told(hand: Hand, check: Event, may_stand: bool) -> Iterator[Fault]:
         yield now, "its check tells of another surprise than its hand"
 
 
-def _said_due(check: Event) -> str:
-    """The failure that a check has due at that heartbeat."""
-    kind, by_ms = check.data["Failure"].text, check.data["DueBy"].whole
-    return kind if kind != "NotDeclared" and by_ms <= check.time_ms else ""
-
-
-def _due(mission: Mission, asked: AfterFailure, check: Event) -> str:
-    """The failure that is due by what a check tells; empty for none."""
+def _due(mission: Mission, asked: AfterFailure, check: Event) -> tuple[str, int]:
+    """The first failure that is due if all stays as a check tells, and by when [ms]; empty and -1 for none."""
     data, reserve_ms = check.data, RESERVE * mission.heartbeat_ms
     stops = "Blocked" if data["Flies"].flag else "Ended"
     if data["Stopped"].flag and stops in asked.of:
-        return stops
-    lasts = check.time_ms - data["Since"].whole >= reserve_ms
-    if not (data["Flies"].flag and data["Without"].flag and lasts):
-        return ""
+        return stops, check.time_ms
+    if not (data["Flies"].flag and data["Without"].flag):
+        return "", -1
+    lacks_ms = max(check.time_ms, data["Since"].whole + reserve_ms)
     if data["Surprised"].flag and "Surprised" in asked.of:
-        return "Surprised"
-    ends = data["Expiry"].whole - check.time_ms < reserve_ms
-    return "Expiring" if ends and "Expiring" in asked.of else ""
+        return "Surprised", lacks_ms
+    if "Expiring" not in asked.of:
+        return "", -1
+    # the first millisecond at which the hand lasts for less
+    return "Expiring", max(lacks_ms, data["Expiry"].whole - reserve_ms + 1)
 
 
 def _answered(hand: Hand, check: Event, after: list[Event], grounded: bool) -> Iterator[Fault]:

@@ -93,7 +93,8 @@ class FailureDueWatch:
                 self._declared(told, body)
             case "GateState":
                 flies = has_it(reported(body))
-                told.hand.held(flies and not told.flies)
+                at_check = in_time(body.Time, told.checked_ms, 0)
+                told.hand.held(flies and not told.flies, at_check)
                 told.flies = flies
             case "HandState":
                 told.hand.changed(body, told.checked_ms)
@@ -170,6 +171,7 @@ class FailureDueWatch:
             return
         name, now_ms = body.Failure.name.lower(), body.Time
         if not in_time(told.checked_ms, now_ms, 0):
+            self._settle(told)
             told.doubts.append(f"it declared {name} at {now_ms / 1000:.2f} s without a check")
         elif told.waits != name:
             told.wrong.append((now_ms, f"{name} is declared, and {told.waits or 'none'} was due"))
@@ -182,6 +184,7 @@ class FailureDueWatch:
             self._settle(told)
             if told.over:
                 continue
+            told.hand.passed(told.checked_ms, told.wrong)
             last_ms = min(told.seen_ms[1] if told.seen_ms else body.Time, body.Time)
             if told.checks and lasted(told.checked_ms + self._beat_ms, last_ms, 1):
                 told.doubts.append(_unchecked(told.checked_ms, last_ms))

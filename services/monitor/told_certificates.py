@@ -18,7 +18,7 @@ FOUND = ("Offered", "Refused")
 class Certificates:
     """expiry_ms, surprises: of the hand; found: a certificate was found since ICAROUS took the vehicle; last: surprises
     at that time; since_ms: since when none is found, None while one is; answered: at the last check it was to answer,
-    and whether it did; lacks: the vehicle logs no further lack.
+    and whether it did; said: it did; lacks: the vehicle logs no further lack.
     """
 
     expiry_ms: int = 0
@@ -27,6 +27,7 @@ class Certificates:
     last: int = 0
     since_ms: int | None = None
     answered: bool = True
+    said: bool = False
     lacks: bool = False
     needed: bool = True
 
@@ -40,10 +41,14 @@ class Certificates:
         """Whether something became known since the last certificate, or there was none since the takeover."""
         return not self.found or self.surprises != self.last
 
-    def held(self, taken: bool) -> None:
-        """Process a `GateState`. taken: ICAROUS has taken the vehicle."""
+    def held(self, taken: bool, at_check: bool) -> None:
+        """Process a `GateState`. taken: ICAROUS has taken the vehicle; at_check: at the time of the last check, so that
+        it has to answer that one.
+        """
         if taken:
-            self.lacks, self.answered = False, False
+            self.lacks = False
+        if taken and at_check:
+            self.answered = self.said
 
     def changed(self, body: Any, checked_ms: int) -> None:
         """Process a `HandState`. checked_ms: time of the last check: what comes at that time is its answer."""
@@ -55,7 +60,7 @@ class Certificates:
             self.lacks = False
         if not in_time(body.Time, checked_ms, 0) or kind not in (*FOUND, "Missing"):
             return
-        self.answered = True
+        self.answered = self.said = True
         if kind == "Missing":
             self.lacks = True
         if not self.needed:
@@ -76,7 +81,7 @@ class Certificates:
 
     def began(self, flies: bool, on_ground: bool) -> None:
         """A heartbeat begins. flies: ICAROUS has the vehicle; on_ground: it needs no certificate."""
-        self.answered, self.needed = not flies, not on_ground
+        self.answered, self.needed, self.said = not flies, not on_ground, False
         if on_ground:
             self.since_ms = None
         elif not flies:

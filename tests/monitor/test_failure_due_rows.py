@@ -150,6 +150,38 @@ def test_a_failure_is_declared_when_due(
     assert verdicts(mission, tmp_path, said) == (expected, expected)
 
 
+BETWEEN = [*under_uxas(0, 2000), gate("ICAROUS", 2250), check(2500, Flies=True)]
+BETWEEN += [hand("Offered", 2500, 12_000), check(3000, Flies=True, Surprised=False, Expiry=12_000)]
+BETWEEN += [*taken(4000)[-3:], *BLOCKS[-2:]]
+
+
+@pytest.mark.parametrize(
+    ("said", "expected"),
+    [
+        # told of a later instant only
+        (edited(EXPIRES, "FailureCheck", 2500, DueBy=99_999), BAD),
+        (edited(EXPIRES, "FailureCheck", 4500, DueBy=5001), BAD),
+        (edited(EXPIRES, "FailureCheck", 4500, Failure="Surprised"), BAD),
+        # declared, but not at the heartbeat at which it was due
+        (edited(ENDS, "FailureState", 3000, Time=3500), BAD),
+        (edited(EXPIRES, "FailureState", 5000, Time=0), BAD),
+        # the last heartbeat is answered too
+        (without(FOUND_AGAIN, "HandState", 12_000), BAD),
+        (edited(FOUND_AGAIN, "HandState", 12_000, Time=12_001), BAD),
+        # the gate is told after the certificate of the same heartbeat
+        ([*without(BLOCKS, "GateState"), gate("ICAROUS", 2000)], GOOD),
+        # taken between two heartbeats: the next one is answered
+        (BETWEEN, GOOD),
+        (without(BETWEEN, "HandState", 2500), BAD),
+    ],
+)
+def test_edits_beside_the_due_heartbeat_are_seen(
+    mission: Mission, said: list[Any], expected: str, tmp_path: Path
+) -> None:
+    said = sorted(said, key=lambda one: one.time_ms)
+    assert verdicts(mission, tmp_path, said) == (expected, expected)
+
+
 GIVEN_UP = message("TaskProgress", 4000, TaskID=1, VehicleID=1, Phase="Failed", Note="blocked: by 90")  # fmt: skip
 
 
