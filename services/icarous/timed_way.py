@@ -37,11 +37,14 @@ KIND = "way"
 
 
 class Timed(NamedTuple):
-    """pieces: the way, timed from begun_ms [ms]; rho_m: bound on the deviation of its arcs [m]."""
+    """pieces: the way, timed from begun_ms [ms]; rho_m: bound on the deviation of its arcs [m]; route: the waypoints that
+    were known as it was found, to one of which it leads.
+    """
 
     pieces: tuple[Piece, ...]
     begun_ms: int
     rho_m: float
+    route: tuple[Position, ...] = ()
 
     def left(self, now_ms: int) -> tuple[Piece, ...]:
         """The rest of it, timed from now; () at its end."""

@@ -11,6 +11,7 @@ from cratous.core.authority.gate import ICAROUS, Gate
 from cratous.core.avoidance.manoeuvre import Motion, smallest_turn
 from cratous.core.avoidance.prediction import Intruder, later
 from cratous.core.avoidance.resolution import Choice
+from cratous.services.icarous import link_loss
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.permits import NONE
@@ -93,6 +94,25 @@ def test_it_is_given_up_where_it_is_not_permitted_any_more() -> None:
     anew = replace(state, held=None)
     again, _ = manoeuvre(CONFIG, anew, sensed(500, motion, ()), frozenset(), True)
     assert again.timed is None
+
+
+def test_on_another_route_or_without_the_link_another_is_flown() -> None:
+    """It leads to a waypoint of the route that was known."""
+    state, choice = manoeuvre(CONFIG, begun(), sensed(0, NORTH, CONVOY), frozenset(), False)
+    assert state.timed is not None
+    assert choice.kind == KIND
+    motion = replace_place(state.timed.left(500)[0].position)
+    now = sensed(500, motion, CONVOY)
+    told_again = replace(state, told=replace(state.told, waypoints=(*WAY,)))
+    kept, _ = manoeuvre(CONFIG, told_again, now, frozenset(), False)
+    assert kept.timed == state.timed
+    south = (NORTH.position, Position(0.0, -9000.0, 300.0))
+    elsewhere = replace(state, told=replace(state.told, waypoints=south))
+    left, choice = manoeuvre(CONFIG, elsewhere, now, frozenset(), False)
+    assert (left.timed, choice.kind) == (None, "heading")
+    alone, choice = link_loss.avoiding(CONFIG, state, now, frozenset())
+    assert (alone.timed, choice.kind) == (None, "heading")
+    assert alone.told == state.told
 
 
 def replace_place(place: Position) -> Motion:
