@@ -5,19 +5,22 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import pytest
 from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
 
 from cratous.core.authority.gate import ICAROUS, Gate
 from cratous.core.avoidance.manoeuvre import Motion, smallest_turn
 from cratous.core.avoidance.prediction import Intruder, later
 from cratous.core.avoidance.resolution import Choice
-from cratous.services.icarous import link_loss
+from cratous.services.icarous import cognition, link_loss
+from cratous.services.icarous.decided import Decided
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.permits import NONE
 from cratous.services.icarous.proposal import describe, manoeuvre
 from cratous.services.icarous.state import Config, Met, State
 from cratous.services.icarous.timed_way import KIND
+from cratous.spec.authority import cognition as meant
 from cratous.spec.mission import Daa, Position, Velocity
 
 CONFIG = Config(1, Daa(VOLUME, buffer=1.25), PROJECTION, 500)
@@ -113,6 +116,30 @@ def test_on_another_route_or_without_the_link_another_is_flown() -> None:
     alone, choice = link_loss.avoiding(CONFIG, state, now, frozenset())
     assert (alone.timed, choice.kind) == (None, "heading")
     assert alone.told == state.told
+
+
+@pytest.mark.parametrize(
+    ("turn_rad", "speed_m_s", "climb_m_s", "how"),
+    [
+        (0.5, 22.0, 0.0, meant.TURN),
+        (0.0, 22.0, 3.0, meant.ALTITUDE),
+        (0.0, 22.0, -3.0, meant.ALTITUDE),
+        (0.0, 30.0, 0.0, meant.SPEED),
+        (0.0, 15.0, 0.1, meant.SPEED),
+        (0.5, 22.0, 3.0, meant.COMBINED),
+        (0.0, 30.0, 3.0, meant.COMBINED),
+    ],
+)
+def test_the_log_says_how_it_avoids(
+    turn_rad: float, speed_m_s: float, climb_m_s: float, how: int
+) -> None:
+    """By what it differs from level flight at the announced speed."""
+    held = Choice(KIND, turn_rad, speed_m_s, climb_m_s, 2.0, True, None)
+    state = replace(begun(), held=held, decided=Decided(meant.TRAFFIC_CONFLICT))
+    after, (said,) = cognition.told(
+        CONFIG._replace(records=True), state, begun(), sensed(0, NORTH, CONVOY)
+    )
+    assert after.decided.resolution == said.resolution == how
 
 
 def replace_place(place: Position) -> Motion:
