@@ -10,16 +10,17 @@ from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
 
 from cratous.core.authority.gate import ICAROUS, Gate
 from cratous.core.avoidance.manoeuvre import Motion, smallest_turn
-from cratous.core.avoidance.prediction import Intruder, later
-from cratous.core.avoidance.resolution import Choice
-from cratous.services.icarous import cognition, link_loss
+from cratous.core.avoidance.prediction import Intruder, buffered, later
+from cratous.core.avoidance.resolution import Choice, Scene
+from cratous.services.icarous import cognition, link_loss, timed_way
 from cratous.services.icarous.decided import Decided
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.permits import NONE
 from cratous.services.icarous.proposal import describe, manoeuvre
 from cratous.services.icarous.state import Config, Met, State
-from cratous.services.icarous.timed_way import KIND
+from cratous.services.icarous.timed_way import KIND, SHARE_S
+from cratous.services.ways_in_time.asking import CHECKS_PER_S, Answer, Asked, Outcome
 from cratous.spec.authority import cognition as meant
 from cratous.spec.mission import Daa, Position, Velocity
 
@@ -140,6 +141,26 @@ def test_the_log_says_how_it_avoids(
         CONFIG._replace(records=True), state, begun(), sensed(0, NORTH, CONVOY)
     )
     assert after.decided.resolution == said.resolution == how
+
+
+def test_searches_in_vain_at_one_heartbeat_have_a_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two places are tried, the nearer one for half as long, so that a heartbeat ends in time."""
+    asked: list[tuple[Position, float]] = []
+
+    def in_vain(question: Asked, _scene: object, budget_s: float) -> Answer:
+        asked.append((question.goal, budget_s))
+        return Answer(Outcome.NONE_IN_TIME, "")
+
+    monkeypatch.setattr(timed_way, "way_in_time", in_vain)
+    scene = Scene(CONVOY, (), buffered(VOLUME, 1.25), 60.0)
+    now = sensed(0, NORTH, CONVOY)
+    for points, shares in ((WAY, (0.5, 1.0)), (WAY[1:], (1.0,))):
+        asked.clear()
+        assert timed_way.proposed(scene, CONFIG.daa, now, points) is None
+        assert asked == [
+            (place, share * SHARE_S) for place, share in zip(points, shares, strict=True)
+        ]
+    assert 1.5 * SHARE_S * CHECKS_PER_S < 20_000
 
 
 def replace_place(place: Position) -> Motion:
