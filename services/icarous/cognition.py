@@ -31,12 +31,15 @@ from cratous.core.authority.link_loss import LAND as TO_LAND
 from cratous.core.authority.link_loss import LANDED as AT_REST
 from cratous.core.authority.take_off import departure_takes
 from cratous.core.avoidance.resolution import Choice
+from cratous.core.kernel import Vec2
 from cratous.core.merging.stages import merging_takes
+from cratous.core.permit.tubes import disc_within
 from cratous.services.icarous import link_loss, merging, take_off
 from cratous.services.icarous.forbidden import FREE, Forbidden
 from cratous.services.icarous.messages import Decides, Sensed
 from cratous.services.icarous.proposal import manoeuvre
 from cratous.services.icarous.state import Config, State
+from cratous.services.icarous.timed_way import KIND as WAY
 from cratous.spec.authority.cycle import MONITOR
 from cratous.spec.records import replace
 
@@ -44,6 +47,8 @@ BY_ITSELF = (LOST_LINK, FAILED, DITCH, LAND, LANDED)
 """Modes in which a course without the link, or after a declared failure, is flown."""
 STRAIGHT_RAD = math.radians(1.0)
 """A manoeuvre within this angle of the present heading is no turn."""
+SAME_SHARE = 0.1
+"""On a way in time a climb within this share of the greatest, and a speed within it of the announced one, is none."""
 
 
 def decided(
@@ -115,6 +120,14 @@ def flown(
     return manoeuvre(config, state, sensed, in_turn, mode_lets_go(mode))
 
 
+def _on_a_way(state: State, sensed: Sensed, held: Choice) -> tuple[bool, bool]:
+    """Whether a way in time climbs or descends now, and whether it is flown at another speed than the announced one."""
+    speed, climbs_m_s = state.told.speed_m_s or sensed.motion.speed_m_s, Vec2(held.climb_m_s, 0.0)
+    faster_m_s = Vec2(held.speed_m_s - speed, 0.0)
+    level = disc_within(climbs_m_s, 0.0, SAME_SHARE * sensed.ability.max_climb_m_s)
+    return not level, not disc_within(faster_m_s, 0.0, SAME_SHARE * speed)
+
+
 def told(
     config: Config, state: State, before: State, sensed: Sensed
 ) -> tuple[State, tuple[Decides, ...]]:
@@ -127,6 +140,8 @@ def told(
         off_rad = math.remainder(held.heading_rad - sensed.motion.heading_rad, math.tau)
         climbs, paces = held.kind == "altitude", held.kind == "speed"
         turns = held.kind == "heading" or turns_by(off_rad, STRAIGHT_RAD)
+        if held.kind == WAY:
+            climbs, paces = _on_a_way(state, sensed, held)
     clear = held is not None and held.clear
     now = now._replace(resolution=resolution(now.mode, turns, climbs, paces, clear))
     state, was = replace(state, decided=now), before.decided

@@ -73,7 +73,9 @@ def manoeuvre(
     scene = scene_of(config, state, sensed)
     held, timed = state.held, state.timed
     if held is not None and timed is not None:
-        follows = followed(timed, scene, config.daa, sensed)
+        # on another route, or with none as without the link, it leads to a place of the past
+        same = timed.route == state.told.waypoints
+        follows = followed(timed, scene, config.daa, sensed) if same else None
         if follows is not None:
             return replace(state, held=follows), follows
         held = None
@@ -158,7 +160,8 @@ def _in_time(config: Config, state: State, sensed: Sensed) -> Timed | None:
     if not state.told.waypoints:
         return None
     points = points_back(state, sensed)
-    return proposed(scene_of(config, state, sensed), config.daa, sensed, points)
+    found = proposed(scene_of(config, state, sensed), config.daa, sensed, points)
+    return None if found is None else found._replace(route=state.told.waypoints)
 
 
 def _by_bands(config: Config, state: State, sensed: Sensed, level: Choice) -> tuple[Choice, ...]:

@@ -25,7 +25,7 @@ from cratous.services.ways_in_time.asking import Asked, Outcome, way_in_time
 from cratous.spec.mission import Daa, Position
 
 SHARE_S = 0.25
-"""Budget of each search [s]: two places are tried, so half of a search's time each."""
+"""Budget of the search for a way to the last place [s]; a nearer one is tried first, for half of it."""
 LEADS_S = 2.0
 """The vehicle steers for where the way is this much later [s]."""
 OFF_S = 1.0
@@ -37,11 +37,14 @@ KIND = "way"
 
 
 class Timed(NamedTuple):
-    """pieces: the way, timed from begun_ms [ms]; rho_m: bound on the deviation of its arcs [m]."""
+    """pieces: the way, timed from begun_ms [ms]; rho_m: bound on the deviation of its arcs [m]; route: the waypoints that
+    were known as it was found, to one of which it leads.
+    """
 
     pieces: tuple[Piece, ...]
     begun_ms: int
     rho_m: float
+    route: tuple[Position, ...] = ()
 
     def left(self, now_ms: int) -> tuple[Piece, ...]:
         """The rest of it, timed from now; () at its end."""
@@ -76,7 +79,8 @@ def proposed(
     past_m = 2 * scene.volume.zthr_m
     layers = (motion.position.alt_m + past_m, motion.position.alt_m - past_m)
     for goal in dict.fromkeys((points[0], points[-1])):
-        found = way_in_time(Asked(motion, goal, ability, layers_m=layers), seen, SHARE_S)
+        share_s = SHARE_S if goal == points[-1] else SHARE_S / 2
+        found = way_in_time(Asked(motion, goal, ability, layers_m=layers), seen, share_s)
         if found.outcome is Outcome.PATH:
             return Timed(found.pieces, sensed.now_ms, found.rho_m)
     return None

@@ -5,18 +5,23 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import pytest
 from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
 
 from cratous.core.authority.gate import ICAROUS, Gate
 from cratous.core.avoidance.manoeuvre import Motion, smallest_turn
-from cratous.core.avoidance.prediction import Intruder, later
-from cratous.core.avoidance.resolution import Choice
+from cratous.core.avoidance.prediction import Intruder, buffered, later
+from cratous.core.avoidance.resolution import Choice, Scene
+from cratous.services.icarous import cognition, link_loss, timed_way
+from cratous.services.icarous.decided import Decided
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.permits import NONE
 from cratous.services.icarous.proposal import describe, manoeuvre
 from cratous.services.icarous.state import Config, Met, State
-from cratous.services.icarous.timed_way import KIND
+from cratous.services.icarous.timed_way import KIND, SHARE_S
+from cratous.services.ways_in_time.asking import CHECKS_PER_S, Answer, Asked, Outcome
+from cratous.spec.authority import cognition as meant
 from cratous.spec.mission import Daa, Position, Velocity
 
 CONFIG = Config(1, Daa(VOLUME, buffer=1.25), PROJECTION, 500)
@@ -93,6 +98,69 @@ def test_it_is_given_up_where_it_is_not_permitted_any_more() -> None:
     anew = replace(state, held=None)
     again, _ = manoeuvre(CONFIG, anew, sensed(500, motion, ()), frozenset(), True)
     assert again.timed is None
+
+
+def test_on_another_route_or_without_the_link_another_is_flown() -> None:
+    """It leads to a waypoint of the route that was known."""
+    state, choice = manoeuvre(CONFIG, begun(), sensed(0, NORTH, CONVOY), frozenset(), False)
+    assert state.timed is not None
+    assert choice.kind == KIND
+    motion = replace_place(state.timed.left(500)[0].position)
+    now = sensed(500, motion, CONVOY)
+    told_again = replace(state, told=replace(state.told, waypoints=(*WAY,)))
+    kept, _ = manoeuvre(CONFIG, told_again, now, frozenset(), False)
+    assert kept.timed == state.timed
+    south = (NORTH.position, Position(0.0, -9000.0, 300.0))
+    elsewhere = replace(state, told=replace(state.told, waypoints=south))
+    left, choice = manoeuvre(CONFIG, elsewhere, now, frozenset(), False)
+    assert (left.timed, choice.kind) == (None, "heading")
+    alone, choice = link_loss.avoiding(CONFIG, state, now, frozenset())
+    assert (alone.timed, choice.kind) == (None, "heading")
+    assert alone.told == state.told
+
+
+@pytest.mark.parametrize(
+    ("turn_rad", "speed_m_s", "climb_m_s", "how"),
+    [
+        (0.5, 22.0, 0.0, meant.TURN),
+        (0.0, 22.0, 3.0, meant.ALTITUDE),
+        (0.0, 22.0, -3.0, meant.ALTITUDE),
+        (0.0, 30.0, 0.0, meant.SPEED),
+        (0.0, 15.0, 0.1, meant.SPEED),
+        (0.5, 22.0, 3.0, meant.COMBINED),
+        (0.0, 30.0, 3.0, meant.COMBINED),
+    ],
+)
+def test_the_log_says_how_it_avoids(
+    turn_rad: float, speed_m_s: float, climb_m_s: float, how: int
+) -> None:
+    """By what it differs from level flight at the announced speed."""
+    held = Choice(KIND, turn_rad, speed_m_s, climb_m_s, 2.0, True, None)
+    state = replace(begun(), held=held, decided=Decided(meant.TRAFFIC_CONFLICT))
+    after, (said,) = cognition.told(
+        CONFIG._replace(records=True), state, begun(), sensed(0, NORTH, CONVOY)
+    )
+    assert after.decided.resolution == said.resolution == how
+
+
+def test_searches_in_vain_at_one_heartbeat_have_a_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two places are tried, the nearer one for half as long, so that a heartbeat ends in time."""
+    asked: list[tuple[Position, float]] = []
+
+    def in_vain(question: Asked, _scene: object, budget_s: float) -> Answer:
+        asked.append((question.goal, budget_s))
+        return Answer(Outcome.NONE_IN_TIME, "")
+
+    monkeypatch.setattr(timed_way, "way_in_time", in_vain)
+    scene = Scene(CONVOY, (), buffered(VOLUME, 1.25), 60.0)
+    now = sensed(0, NORTH, CONVOY)
+    for points, shares in ((WAY, (0.5, 1.0)), (WAY[1:], (1.0,))):
+        asked.clear()
+        assert timed_way.proposed(scene, CONFIG.daa, now, points) is None
+        assert asked == [
+            (place, share * SHARE_S) for place, share in zip(points, shares, strict=True)
+        ]
+    assert 1.5 * SHARE_S * CHECKS_PER_S < 20_000
 
 
 def replace_place(place: Position) -> Motion:
