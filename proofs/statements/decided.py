@@ -103,15 +103,20 @@ class _Stated:
         def enough(some: set[int]) -> bool:
             return of_more_than_one([hows[self.names[n]] for n in some])
 
+        # such a use would be found at the few places where another thing is the same as the definition: at x = y
+        otherwise = set[int]()
         for calls in CALLS:
             if self.may_run and not enough(found):
-                found |= other_results.decided(statement, seed, calls, enough)
+                found |= other_results.decided(statement, seed, calls, enough, otherwise)
             if calls == CALLS[0] and not enough(found):
-                found |= self._by_solver(meant, [n for n in uses if n not in found], further)
+                left = [n for n in uses if n not in found | otherwise]
+                found |= self._by_solver(meant, left, further)
         for again in range(TRIES if self.may_run else 0):
             if enough(found):
                 break
-            found |= other_results.decided(statement, f"{seed}, {again}", CALLS[-1], enough)
+            found |= other_results.decided(
+                statement, f"{seed}, {again}", CALLS[-1], enough, otherwise
+            )
         return {self.names[n] for n in found}
 
     def _places(self, number: int) -> dict[Place, z3.ExprRef]:

@@ -54,12 +54,18 @@ class Statement(NamedTuple):
 
 
 def decided(
-    statement: Statement, seed: str, calls: int, enough_of: Callable[[set[int]], bool]
+    statement: Statement,
+    seed: str,
+    calls: int,
+    enough_of: Callable[[set[int]], bool],
+    otherwise: set[int] | None = None,
 ) -> set[int]:
     """The uses whose results the goals are found to decide at many values; enough_of: ends the search.
 
-    calls: the most calls of functions.
+    calls: the most calls of functions. otherwise: gets the uses of which goals are false with the definition's value
+    in the kernel's place, at some place: what they say is another thing, even if not everywhere.
     """
+    others = set[int]() if otherwise is None else otherwise
     asked = {use: terms for use, (_, terms) in statement.uses.items()}
     values: dict[Place, set[Any]] = {place: set() for use in asked.values() for place in use}
     many: set[Place] = set()
@@ -69,8 +75,9 @@ def decided(
     hairs = (0, 1) if any(z3.is_real(t) for use in asked.values() for t in use.values()) else (0,)
     for number in range(PLACES):
         places = [_Place(statement, f"{seed} {number}", some, left) for some in hairs]
-        for use in sorted(asked.keys() - found):
+        for use in sorted(asked.keys() - found - others):
             how = _least(place.holds(use) for place in places)
+            others |= {use} if any(use in place.otherwise for place in places) else set()
             if how == NO:
                 continue
             if how == BY_DEFINITION:
@@ -87,7 +94,7 @@ def decided(
                 found.add(use)
                 if enough_of(found):
                     return found
-        if len(found) == len(asked) or left[0] <= 0:
+        if len(found | others) == len(asked) or left[0] <= 0:
             break
     return found
 
@@ -115,6 +122,7 @@ class _Place:
     def __init__(self, of: Statement, seed: str, hairs: int, left: list[int]) -> None:
         self.statement, self.uses, self.rows, self.meant = of.run, of.uses, of.rows, of.meant
         self.further = of.further
+        self.otherwise: set[int] = set()
         self.seed, self.hairs, self.left = seed, hairs, left
         # some statements about a fraction (from 0 to 1) seldom apply elsewhere
         self.values = _InUnit if int(sha256(seed.encode()).hexdigest(), 16) % 2 else Nudged
@@ -144,6 +152,7 @@ class _Place:
             if not wrong.false:
                 continue
             if use not in self.further and not self._meets(call, wrong):
+                self.otherwise.add(use)
                 return NO
             if use in self.rows:
                 return BY_DEFINITION
@@ -189,7 +198,10 @@ def kinds(function: Callable[..., Any]) -> tuple[list[Any], Any]:
 def _with_value(result: Any, value: Any) -> Iterator[Any]:
     """The result with this value in its place, or in that of a part of its kind."""
     if _shape(result) == _shape(value):
-        yield value
+        # a record with the same fields in another order takes each by its name
+        fields, own = getattr(value, "_fields", ()), getattr(result, "_fields", ())
+        by_name = fields != own and set(fields) == set(own)
+        yield type(result)(*(getattr(value, name) for name in own)) if by_name else value
     elif isinstance(result, tuple):
         for k, part in enumerate(result):
             for new in _with_value(part, value):
