@@ -7,7 +7,7 @@ which neither finds this within its bounds is not decided, and vouches for nothi
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 import z3
@@ -21,7 +21,13 @@ from cratous.proofs.engine.terms import free_names, known, leaves
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.statements import free_results, other_results
 from cratous.proofs.statements.relations import Outline, outline
-from cratous.proofs.statements.unconditional import Use, by_way_of, of_definition, of_further_values
+from cratous.proofs.statements.unconditional import (
+    Use,
+    by_way_of,
+    names_given,
+    of_definition,
+    of_further_values,
+)
 
 Hows = dict[Use, str]
 """For uses that relate a kernel to its definition: how their arguments vary (`engine.reachable_paths`)."""
@@ -94,7 +100,7 @@ class _Stated:
         told = by_way_of(claim, meant)
         rows = {n for n in uses if self.names[n] in told or meant in claim.rows([self.names[n]])}
         places = {n: (self.names[n][0], self._places(n)) for n in uses}
-        further = frozenset(n for n in uses if of_further_values(claim, n, meant))
+        further = {n: names_given(claim, n) for n in uses if of_further_values(claim, n, meant)}
         statement = other_results.Statement(self.run, places, meant, frozenset(rows), further)
         # a definition that is true of a result, without a condition, has only to exclude another
         plain = of_definition(claim, meant)
@@ -129,7 +135,7 @@ class _Stated:
             return set()
         return {n for n in uses if free_results.excludes(claim, n, meant, possible)}
 
-    def _by_solver(self, meant: str, uses: list[int], further: frozenset[int]) -> set[int]:
+    def _by_solver(self, meant: str, uses: list[int], further: Collection[int]) -> set[int]:
         claim, possible = self.freed, _Asking()
         if claim is None:
             return set()

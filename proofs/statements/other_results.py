@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from hashlib import sha256
+from types import MappingProxyType
 from typing import Any, NamedTuple, get_type_hints
 
 import z3
@@ -24,7 +25,7 @@ from cratous.proofs.engine.argument_values import Place, enough
 from cratous.proofs.engine.terms import leaves
 from cratous.proofs.running.late_values import now
 from cratous.proofs.running.nudged import STOPS, Nudged, Observed, no_lemma
-from cratous.proofs.running.statement import truth
+from cratous.proofs.running.statement import Values, truth
 from cratous.proofs.statements.closed_definitions import full_name
 
 NO, GOAL, BY_DEFINITION = 0, 1, 2
@@ -41,7 +42,8 @@ class Statement(NamedTuple):
     """A statement; uses: the uses of kernels to decide, by number, each with its kernel's name and its arguments
     other than literals.
 
-    further: uses that goals hold against the definition of further values (THERE IS one), so that they may deny it;
+    further: uses that goals hold against the definition of further values (THERE IS one), so that they may deny it
+    of these, each with the names in its own arguments;
     meant: the definition's full name; rows: uses whose goals refer to it without a condition, but not by a result
     that could be replaced (it is evaluated at literals).
     """
@@ -50,7 +52,7 @@ class Statement(NamedTuple):
     uses: Mapping[int, tuple[str, Mapping[Place, z3.ExprRef]]]
     meant: str
     rows: frozenset[int]
-    further: frozenset[int] = frozenset()
+    further: Mapping[int, frozenset[str]] = MappingProxyType({})
 
 
 def decided(
@@ -116,6 +118,17 @@ class _InUnit(Nudged):
         return Fraction(said >> 128, 2**128) + super().real(name) % Fraction(1, 2**130)
 
 
+class _Elsewhere(Nudged):
+    """Pseudo-random numbers, but for the values of a point."""
+
+    def __init__(self, seed: str, point: Mapping[str, Any]) -> None:
+        super().__init__(seed, 0)
+        self.point = dict(point)
+
+    def real(self, name: str) -> Fraction:
+        return self.point[name] if name in self.point else super().real(name)
+
+
 class _Place:
     """The runs of a statement at one place."""
 
@@ -132,8 +145,16 @@ class _Place:
         """The run of the statement as it is."""
         return self._run({}, strict=False)
 
-    def _run(self, results: Mapping[Call, Any], *, strict: bool = True) -> _Replaced:
-        values = self.values(self.seed, self.hairs)
+    def _own(self, use: int) -> list[Call]:
+        """The calls of definitions that stay the same where values that the use's arguments do not name are others."""
+        known = {n: now(v) for n, v in self.base.shown.items() if n in self.further[use]}
+        beside = self._run({}, strict=False, values=_Elsewhere(f"{self.seed} elsewhere", known))
+        return beside.definitions
+
+    def _run(
+        self, results: Mapping[Call, Any], *, strict: bool = True, values: Values | None = None
+    ) -> _Replaced:
+        values = values or self.values(self.seed, self.hairs)
         on = _Replaced(values, no_lemma, results=results, strict=strict)
         with contextlib.suppress(*STOPS):
             if self.left[0] > 0:
@@ -151,14 +172,19 @@ class _Place:
             wrong = self._run({call: other})
             if not wrong.false:
                 continue
-            if use not in self.further and not self._meets(call, wrong):
-                self.otherwise.add(use)
-                return NO
+            own: list[
+                Call
+            ] = []  # calls of the definition that only relate it to the kernel's own arguments
+            if not self._meets(call, wrong):
+                if use not in self.further:
+                    self.otherwise.add(use)
+                    return NO
+                own = self._own(use)
             if use in self.rows:
                 return BY_DEFINITION
             found = GOAL
             for meant in wrong.definitions:
-                if meant not in wrong.found or full_name(meant[0]) != self.meant:
+                if meant not in wrong.found or meant in own or full_name(meant[0]) != self.meant:
                     continue
                 for result in (other, *leaves(other), *_others(wrong.found[meant], self.seed)):
                     if _shape(result) != _shape(wrong.found[meant]):

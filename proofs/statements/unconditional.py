@@ -209,6 +209,11 @@ def of_further_values(claim: Outline, use: int, meant: str) -> bool:
     return False
 
 
+def names_given(claim: Outline, use: int) -> frozenset[str]:
+    """The names in the arguments of a use, and of what these are made of."""
+    return frozenset(_names_of(claim, claim.stated_uses[use][1]))
+
+
 def _parameters(function: Callable[..., Any]) -> list[str]:
     return list(inspect.signature(function).parameters)
 
