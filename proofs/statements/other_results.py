@@ -177,7 +177,10 @@ class _Place:
             ] = []  # calls of the definition that only relate it to the kernel's own arguments
             if not self._meets(call, wrong):
                 if use not in self.further:
-                    self.otherwise.add(use)
+                    # a truth value may be joined with another: done before, or long enough
+                    given = [m for m in wrong.definitions if full_name(m[0]) == self.meant]
+                    if not any(isinstance(wrong.found.get(m), bool) for m in given):
+                        self.otherwise.add(use)
                     return NO
                 own = self._own(use)
             if use in self.rows:
