@@ -188,7 +188,8 @@ def _owns(function: types.FunctionType) -> bool:
 
 @functools.cache
 def _literals(function: types.FunctionType) -> bool:
-    """Whether some operation, call or assignment in the function reads none of its locals."""
+    """Whether some operation, call or assignment in the function reads none of its locals, or a written number is the
+    value of something on some way: of a field, in a loop, by `if` within an expression."""
     node = _definition(function)
     names = function.__code__.co_varnames
 
@@ -196,8 +197,48 @@ def _literals(function: types.FunctionType) -> bool:
         loaded = [n for n in ast.walk(part) if isinstance(n, ast.Name) and n.id in names]
         return not any(isinstance(name.ctx, ast.Load) for name in loaded)
 
+    if node is None:
+        return True
+    beside: set[int] = set()  # numbers that become a term with what they stand beside
+    for part in ast.walk(node):
+        operands = _operands(part)
+        if isinstance(part, ast.Return) or not all(map(alone, operands)):
+            beside |= set(map(id, operands))
     kinds = ast.BinOp | ast.Assign | ast.AnnAssign | ast.Call
-    return node is None or any(isinstance(n, kinds) and alone(n) for n in ast.walk(node))
+    return any(
+        (isinstance(n, kinds) and alone(n)) or (_is_number(n, function) and id(n) not in beside)
+        for n in ast.walk(node)
+    )
+
+
+def _operands(node: ast.AST) -> list[ast.expr]:
+    """The operands of an operation or comparison, or of min or max; what a function returns, which is joined."""
+    match node:
+        case ast.BinOp(left=left, right=right):
+            return [left, right]
+        case ast.Compare(left=left, comparators=more):
+            return [left, *more]
+        case ast.Call(func=ast.Name(id="min" | "max"), args=args):
+            return args
+        case ast.Return(value=ast.expr() as value):
+            return list(_ways(value))
+    return []
+
+
+def _ways(value: ast.expr) -> Iterator[ast.expr]:
+    """What a value is on each way through its conditions."""
+    if isinstance(value, ast.IfExp):
+        yield from (*_ways(value.body), *_ways(value.orelse))
+    else:
+        yield value
+
+
+def _is_number(node: ast.AST, function: types.FunctionType) -> bool:
+    """Whether a node is a written number or the name of one."""
+    if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load):
+        name = node.id if isinstance(node, ast.Name) else node.attr
+        return _plain(function.__globals__.get(name))
+    return isinstance(node, ast.Constant) and _plain(node.value)
 
 
 def doubtful(visits: Iterable[Visit]) -> bool:

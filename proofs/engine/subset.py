@@ -12,6 +12,7 @@ reading. Each expression has the same kind on every path (see `expressions`).
 from __future__ import annotations
 
 import ast
+import builtins
 import sys
 import types
 from collections.abc import Callable, Container
@@ -79,6 +80,8 @@ def identity(function: Any) -> str:
         return f"the code that runs is that of {function.__code__.co_qualname!r}, not its own"
     if module is None or function.__globals__ is not vars(module):
         return "it is not of the module that it names"
+    if not _of_python(function.__builtins__) or not _of_python(vars(module).get("__builtins__")):
+        return "its module brings other builtins than Python's own"
     if vars(module).get(function.__name__) is not function:
         return f"its module has another thing of the name {function.__name__!r}: give each its own"
     try:
@@ -88,6 +91,11 @@ def identity(function: Any) -> str:
     if not top:
         return "it is not the one definition of its name at the top of its module's file"
     return ""
+
+
+def _of_python(scope: Any) -> bool:
+    """Whether these are the names that Python has everywhere: a module may give its functions others."""
+    return scope is builtins or scope is vars(builtins)
 
 
 def hints(function: Any) -> dict[str, Any]:

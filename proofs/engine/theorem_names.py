@@ -72,6 +72,8 @@ def rebound(tree: ast.Module) -> set[str]:
         name = _bound_name(node)
         if name in BUILTINS | CONSUMERS:
             raise Refused(node, f"another {name!r} than Python's own", "a name of its own")
+        if name.startswith("__"):  # `__builtins__` would exchange them all
+            raise Refused(node, f"a value for {name!r}", "a name of its own")
         if name:
             found.setdefault(name, []).append(node)
     for node in ast.walk(tree):

@@ -7,7 +7,7 @@ which neither finds this within its bounds is not decided, and vouches for nothi
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 import z3
@@ -21,7 +21,13 @@ from cratous.proofs.engine.terms import free_names, known, leaves
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.statements import free_results, other_results
 from cratous.proofs.statements.relations import Outline, outline
-from cratous.proofs.statements.unconditional import Use, by_way_of, of_definition, of_further_values
+from cratous.proofs.statements.unconditional import (
+    Use,
+    by_way_of,
+    names_given,
+    of_definition,
+    of_further_values,
+)
 
 Hows = dict[Use, str]
 """For uses that relate a kernel to its definition: how their arguments vary (`engine.reachable_paths`)."""
@@ -94,7 +100,7 @@ class _Stated:
         told = by_way_of(claim, meant)
         rows = {n for n in uses if self.names[n] in told or meant in claim.rows([self.names[n]])}
         places = {n: (self.names[n][0], self._places(n)) for n in uses}
-        further = frozenset(n for n in uses if of_further_values(claim, n, meant))
+        further = {n: names_given(claim, n) for n in uses if of_further_values(claim, n, meant)}
         statement = other_results.Statement(self.run, places, meant, frozenset(rows), further)
         # a definition that is true of a result, without a condition, has only to exclude another
         plain = of_definition(claim, meant)
@@ -103,15 +109,20 @@ class _Stated:
         def enough(some: set[int]) -> bool:
             return of_more_than_one([hows[self.names[n]] for n in some])
 
+        # such a use would be found at the few places where another thing is the same as the definition: at x = y
+        otherwise = set[int]()
         for calls in CALLS:
             if self.may_run and not enough(found):
-                found |= other_results.decided(statement, seed, calls, enough)
+                found |= other_results.decided(statement, seed, calls, enough, otherwise)
             if calls == CALLS[0] and not enough(found):
-                found |= self._by_solver(meant, [n for n in uses if n not in found], further)
+                left = [n for n in uses if n not in found | otherwise]
+                found |= self._by_solver(meant, left, further)
         for again in range(TRIES if self.may_run else 0):
             if enough(found):
                 break
-            found |= other_results.decided(statement, f"{seed}, {again}", CALLS[-1], enough)
+            found |= other_results.decided(
+                statement, f"{seed}, {again}", CALLS[-1], enough, otherwise
+            )
         return {self.names[n] for n in found}
 
     def _places(self, number: int) -> dict[Place, z3.ExprRef]:
@@ -124,7 +135,7 @@ class _Stated:
             return set()
         return {n for n in uses if free_results.excludes(claim, n, meant, possible)}
 
-    def _by_solver(self, meant: str, uses: list[int], further: frozenset[int]) -> set[int]:
+    def _by_solver(self, meant: str, uses: list[int], further: Collection[int]) -> set[int]:
         claim, possible = self.freed, _Asking()
         if claim is None:
             return set()

@@ -37,6 +37,7 @@ class FreeResults(Claim):
     said: list[tuple[list[z3.BoolRef], list[z3.BoolRef], z3.BoolRef]] = field(default_factory=list)
     free: dict[Any, tuple[z3.BoolRef, Any]] = field(default_factory=dict)
     own: dict[Any, Any] = field(default_factory=dict)
+    named: dict[Any, set[str]] = field(default_factory=dict)
     kept: list[Any] = field(default_factory=list)
     number: int = 0
 
@@ -45,10 +46,12 @@ class FreeResults(Claim):
         if not any(map(free_names, terms)):
             return value
         self.kept += terms
+        names = set[str]().union(*map(free_names, terms))
         key = (what, function, tuple(term.get_id() for term in terms))
         if key not in self.free:
             name = f"{what}!{full_name(function)}!{len(self.free)}"
             any_value = _any(name, get_type_hints(function)["return"])
+            self.named[key] = names
             self.free[key], self.own[key] = (z3.Bool(f"{name}!switch"), any_value), value
         switch, any_value = self.free[key]
         return join([(switch, any_value), (z3.Not(switch), value)])
@@ -100,10 +103,26 @@ class FreeResults(Claim):
         switches = [switch for switch, _ in self.free.values()]
         ours = self.switches[use]
         off = [(s, z3.BoolVal(s.eq(ours))) for s in switches]
-        meant = [
-            (s, z3.BoolVal(s.eq(ours) or str(s).startswith(f"definition!{by_definition}!")))
-            for s in switches
-        ]
+        own = self._own(use) if further else set()
+        ways = []  # with any value of the definition, or, if it may be denied, with those of further values alone
+        for left_out in [own, set()] if further else [set()]:
+            meant = [
+                (
+                    s,
+                    z3.BoolVal(
+                        s.eq(ours) or (_of(s, by_definition) and s.get_id() not in left_out)
+                    ),
+                )
+                for s in switches
+            ]
+            found = self._false(ours, off, meant if by_definition else None)
+            denies = left_out is own and further
+            met = [self._met(use, by_definition)] if by_definition and not denies else []
+            ways.append(z3.And(z3.Or(*found), *met))
+        return z3.Or(*ways)
+
+    def _false(self, ours: z3.BoolRef, off: list[Any], meant: list[Any] | None) -> list[z3.BoolRef]:
+        """Where a goal that depends on the use is false; meant: and is true with other results switched on."""
         found = []
         name = ours.decl().name()
         for premises, facts, goal in self.said:
@@ -111,10 +130,15 @@ class FreeResults(Claim):
                 continue  # the goal does not depend on this use
             here = z3.And(*premises)
             wrong = z3.substitute(z3.And(here, *facts, z3.Not(goal)), *off)
-            right = z3.substitute(z3.Implies(here, goal), *meant)
-            found.append(z3.And(wrong, right) if by_definition else wrong)
-        met = [self._met(use, by_definition)] if by_definition and not further else []
-        return z3.And(z3.Or(*found), *met)
+            right = [z3.substitute(z3.Implies(here, goal), *meant)] if meant else []
+            found.append(z3.And(wrong, *right))
+        return found
+
+    def _own(self, use: int) -> set[int]:
+        """Switches of the definitions whose arguments name nothing but what the use's arguments name."""
+        given = set[str]().union(*[free_names(known(v)) for v in leaves(self.given[use])])
+        alike = {key for key, names in self.named.items() if names <= given}
+        return {self.free[key][0].get_id() for key in alike}
 
     def _met(self, use: int, meant: str) -> z3.BoolRef:
         """Every goal is true with a value of this definition as the result of the use, if one is of its kind."""
@@ -138,6 +162,10 @@ class FreeResults(Claim):
             at = [z3.substitute(value, *off) for value in values]
             ways.append(z3.substitute(goals, *switched, *zip(places, at, strict=True)))
         return z3.Or(*ways) if ways else z3.BoolVal(True)
+
+
+def _of(switch: z3.BoolRef, definition: str) -> bool:
+    return str(switch).startswith(f"definition!{definition}!")
 
 
 def _terms(value: Any) -> list[z3.ExprRef]:

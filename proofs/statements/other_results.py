@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from hashlib import sha256
+from types import MappingProxyType
 from typing import Any, NamedTuple, get_type_hints
 
 import z3
@@ -24,7 +25,7 @@ from cratous.proofs.engine.argument_values import Place, enough
 from cratous.proofs.engine.terms import leaves
 from cratous.proofs.running.late_values import now
 from cratous.proofs.running.nudged import STOPS, Nudged, Observed, no_lemma
-from cratous.proofs.running.statement import truth
+from cratous.proofs.running.statement import Values, truth
 from cratous.proofs.statements.closed_definitions import full_name
 
 NO, GOAL, BY_DEFINITION = 0, 1, 2
@@ -41,7 +42,8 @@ class Statement(NamedTuple):
     """A statement; uses: the uses of kernels to decide, by number, each with its kernel's name and its arguments
     other than literals.
 
-    further: uses that goals hold against the definition of further values (THERE IS one), so that they may deny it;
+    further: uses that goals hold against the definition of further values (THERE IS one), so that they may deny it
+    of these, each with the names in its own arguments;
     meant: the definition's full name; rows: uses whose goals refer to it without a condition, but not by a result
     that could be replaced (it is evaluated at literals).
     """
@@ -50,16 +52,22 @@ class Statement(NamedTuple):
     uses: Mapping[int, tuple[str, Mapping[Place, z3.ExprRef]]]
     meant: str
     rows: frozenset[int]
-    further: frozenset[int] = frozenset()
+    further: Mapping[int, frozenset[str]] = MappingProxyType({})
 
 
 def decided(
-    statement: Statement, seed: str, calls: int, enough_of: Callable[[set[int]], bool]
+    statement: Statement,
+    seed: str,
+    calls: int,
+    enough_of: Callable[[set[int]], bool],
+    otherwise: set[int] | None = None,
 ) -> set[int]:
     """The uses whose results the goals are found to decide at many values; enough_of: ends the search.
 
-    calls: the most calls of functions.
+    calls: the most calls of functions. otherwise: gets the uses of which goals are false with the definition's value
+    in the kernel's place, at some place: what they say is another thing, even if not everywhere.
     """
+    others = set[int]() if otherwise is None else otherwise
     asked = {use: terms for use, (_, terms) in statement.uses.items()}
     values: dict[Place, set[Any]] = {place: set() for use in asked.values() for place in use}
     many: set[Place] = set()
@@ -69,8 +77,9 @@ def decided(
     hairs = (0, 1) if any(z3.is_real(t) for use in asked.values() for t in use.values()) else (0,)
     for number in range(PLACES):
         places = [_Place(statement, f"{seed} {number}", some, left) for some in hairs]
-        for use in sorted(asked.keys() - found):
+        for use in sorted(asked.keys() - found - others):
             how = _least(place.holds(use) for place in places)
+            others |= {use} if any(use in place.otherwise for place in places) else set()
             if how == NO:
                 continue
             if how == BY_DEFINITION:
@@ -87,7 +96,7 @@ def decided(
                 found.add(use)
                 if enough_of(found):
                     return found
-        if len(found) == len(asked) or left[0] <= 0:
+        if len(found | others) == len(asked) or left[0] <= 0:
             break
     return found
 
@@ -109,12 +118,24 @@ class _InUnit(Nudged):
         return Fraction(said >> 128, 2**128) + super().real(name) % Fraction(1, 2**130)
 
 
+class _Elsewhere(Nudged):
+    """Pseudo-random numbers, but for the values of a point."""
+
+    def __init__(self, seed: str, point: Mapping[str, Any]) -> None:
+        super().__init__(seed, 0)
+        self.point = dict(point)
+
+    def real(self, name: str) -> Fraction:
+        return self.point[name] if name in self.point else super().real(name)
+
+
 class _Place:
     """The runs of a statement at one place."""
 
     def __init__(self, of: Statement, seed: str, hairs: int, left: list[int]) -> None:
         self.statement, self.uses, self.rows, self.meant = of.run, of.uses, of.rows, of.meant
         self.further = of.further
+        self.otherwise: set[int] = set()
         self.seed, self.hairs, self.left = seed, hairs, left
         # some statements about a fraction (from 0 to 1) seldom apply elsewhere
         self.values = _InUnit if int(sha256(seed.encode()).hexdigest(), 16) % 2 else Nudged
@@ -124,8 +145,16 @@ class _Place:
         """The run of the statement as it is."""
         return self._run({}, strict=False)
 
-    def _run(self, results: Mapping[Call, Any], *, strict: bool = True) -> _Replaced:
-        values = self.values(self.seed, self.hairs)
+    def _own(self, use: int) -> list[Call]:
+        """The calls of definitions that stay the same where values that the use's arguments do not name are others."""
+        known = {n: now(v) for n, v in self.base.shown.items() if n in self.further[use]}
+        beside = self._run({}, strict=False, values=_Elsewhere(f"{self.seed} elsewhere", known))
+        return beside.definitions
+
+    def _run(
+        self, results: Mapping[Call, Any], *, strict: bool = True, values: Values | None = None
+    ) -> _Replaced:
+        values = values or self.values(self.seed, self.hairs)
         on = _Replaced(values, no_lemma, results=results, strict=strict)
         with contextlib.suppress(*STOPS):
             if self.left[0] > 0:
@@ -143,13 +172,22 @@ class _Place:
             wrong = self._run({call: other})
             if not wrong.false:
                 continue
-            if use not in self.further and not self._meets(call, wrong):
-                return NO
+            own: list[
+                Call
+            ] = []  # calls of the definition that only relate it to the kernel's own arguments
+            if not self._meets(call, wrong):
+                if use not in self.further:
+                    # a truth value may be joined with another: done before, or long enough
+                    given = [m for m in wrong.definitions if full_name(m[0]) == self.meant]
+                    if not any(isinstance(wrong.found.get(m), bool) for m in given):
+                        self.otherwise.add(use)
+                    return NO
+                own = self._own(use)
             if use in self.rows:
                 return BY_DEFINITION
             found = GOAL
             for meant in wrong.definitions:
-                if meant not in wrong.found or full_name(meant[0]) != self.meant:
+                if meant not in wrong.found or meant in own or full_name(meant[0]) != self.meant:
                     continue
                 for result in (other, *leaves(other), *_others(wrong.found[meant], self.seed)):
                     if _shape(result) != _shape(wrong.found[meant]):
@@ -189,7 +227,10 @@ def kinds(function: Callable[..., Any]) -> tuple[list[Any], Any]:
 def _with_value(result: Any, value: Any) -> Iterator[Any]:
     """The result with this value in its place, or in that of a part of its kind."""
     if _shape(result) == _shape(value):
-        yield value
+        # a record with the same fields in another order takes each by its name
+        fields, own = getattr(value, "_fields", ()), getattr(result, "_fields", ())
+        by_name = fields != own and set(fields) == set(own)
+        yield type(result)(*(getattr(value, name) for name in own)) if by_name else value
     elif isinstance(result, tuple):
         for k, part in enumerate(result):
             for new in _with_value(part, value):

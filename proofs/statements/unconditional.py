@@ -68,17 +68,27 @@ def unconditional(claim: Outline, uses: Iterable[Held]) -> frozenset[Held]:
 def _of_induction(claim: Outline, use: Use) -> bool:
     """Whether it is a step's use in an induction whose last part has no condition on items and context.
 
-    The last goal of `c.fold` is an equality that holds under its premises.
+    The last goal of `c.fold` is an equality that holds under its premises; of what the definition gives, not of a term
+    that the statement makes of it: its negation, or twice its value.
     """
     last = [owed.goal for owed in claim.obligations if owed.kind == "use"]
-    if use in claim.of_folds or not last:
-        return use in claim.of_folds
+    if use in claim.of_folds:
+        return all(map(_is_plain_equality, last))
+    if not last:
+        return False
     others = dict(claim.stated_uses)[use][1:]
     names = set().union(*[_within(claim, goal) for goal in last])
     stepped = any(
         use in claim.uses_in(owed.goal) for owed in claim.obligations if owed.kind == "step"
     )
     return stepped and not any(names & _within(claim, known(leaf)) for leaf in leaves(others))
+
+
+def _is_plain_equality(goal: z3.BoolRef) -> bool:
+    """Whether it is an equality of two values, or several."""
+    if z3.is_and(goal):
+        return all(map(_is_plain_equality, goal.children()))
+    return bool(z3.is_eq(goal) and all(map(z3.is_const, goal.children())))
 
 
 def _within(claim: Outline, term: z3.ExprRef) -> set[str]:
@@ -110,8 +120,17 @@ def _said(claim: Outline, conclusion: z3.BoolRef) -> Iterator[Held]:
             for kernel, use in claim.results.get(str(one), ()):
                 # a definition of the kernel's own result may hold for every result
                 own = use in claim.uses_in(other)
-                if not own and all(_of_the_same(claim, use, value) for value in values):
+                theirs = [_of_that_field(claim, one, value) for value in values]
+                if not own and all(theirs) and all(_of_the_same(claim, use, v) for v in values):
                     yield kernel, only, *use
+
+
+def _of_that_field(claim: Outline, one: z3.ExprRef, value: z3.ExprRef) -> bool:
+    """Whether a definition's value is that of the field of one, by name; true where it has no such field."""
+    field = str(one).partition("#")[2].partition(".")[2]
+    head, _, rest = str(value).partition("#")
+    there = f"{head}#{rest.partition('.')[0]}.{field}"
+    return there == str(value) or there not in claim.meant
 
 
 def _values(term: z3.ExprRef) -> list[z3.ExprRef]:
@@ -188,6 +207,11 @@ def of_further_values(claim: Outline, use: int, meant: str) -> bool:
             if further and ours and own not in claim.uses_in(_all(call)):
                 return True
     return False
+
+
+def names_given(claim: Outline, use: int) -> frozenset[str]:
+    """The names in the arguments of a use, and of what these are made of."""
+    return frozenset(_names_of(claim, claim.stated_uses[use][1]))
 
 
 def _parameters(function: Callable[..., Any]) -> list[str]:
