@@ -103,15 +103,19 @@ class _Stated:
         def enough(some: set[int]) -> bool:
             return of_more_than_one([hows[self.names[n]] for n in some])
 
+        anywhere = False
         for calls in CALLS:
             if self.may_run and not enough(found):
-                found |= other_results.decided(statement, seed, calls, enough)
+                more, anywhere = other_results.decided(statement, seed, calls, enough)
+                found |= more
             if calls == CALLS[0] and not enough(found):
                 found |= self._by_solver(meant, [n for n in uses if n not in found], further)
         for again in range(TRIES if self.may_run else 0):
-            if enough(found):
+            # where the goals decided a result nowhere, one further run is enough: it stays undecided
+            if enough(found) or (again and not anywhere):
                 break
-            found |= other_results.decided(statement, f"{seed}, {again}", CALLS[-1], enough)
+            more, some = other_results.decided(statement, f"{seed}, {again}", CALLS[-1], enough)
+            found, anywhere = found | more, anywhere or some
         return {self.names[n] for n in found}
 
     def _places(self, number: int) -> dict[Place, z3.ExprRef]:

@@ -55,11 +55,12 @@ class Statement(NamedTuple):
 
 def decided(
     statement: Statement, seed: str, calls: int, enough_of: Callable[[set[int]], bool]
-) -> set[int]:
-    """The uses whose results the goals are found to decide at many values; enough_of: ends the search.
+) -> tuple[set[int], bool]:
+    """The uses whose results the goals are found to decide at many values, and whether they decide one anywhere.
 
-    calls: the most calls of functions.
+    enough_of: ends the search; calls: the most calls of functions.
     """
+    anywhere = False
     asked = {use: terms for use, (_, terms) in statement.uses.items()}
     values: dict[Place, set[Any]] = {place: set() for use in asked.values() for place in use}
     many: set[Place] = set()
@@ -73,6 +74,7 @@ def decided(
             how = _least(place.holds(use) for place in places)
             if how == NO:
                 continue
+            anywhere = True
             if how == BY_DEFINITION:
                 meant.add(use)
             here, beside = places[0].base.arguments, places[-1].base.arguments
@@ -86,10 +88,10 @@ def decided(
             if use in meant and asked[use].keys() <= many:
                 found.add(use)
                 if enough_of(found):
-                    return found
+                    return found, anywhere
         if len(found) == len(asked) or left[0] <= 0:
             break
-    return found
+    return found, anywhere
 
 
 def _least(found: Iterator[int]) -> int:
