@@ -38,17 +38,24 @@ def now(value: Any) -> Any:
     return value
 
 
+PLAIN = (1, 0)
+"""Scale and offset of a value as it was drawn."""
+
+
 class Late:
     """scale * value + offset of one arbitrary value; any use but addition, scaling and comparison draws its number."""
 
     __slots__ = ("_cell", "_offset", "_scale")
 
-    def __init__(self, cell: Cell, scale: Any = 1, offset: Any = 0) -> None:
+    def __init__(self, cell: Cell, scale: Any = PLAIN[0], offset: Any = PLAIN[1]) -> None:
         self._cell, self._scale, self._offset = cell, scale, offset
 
     def number(self) -> Fraction:
         """The number; draws it if it is still open."""
-        return Fraction(self._scale * self._cell.number() + self._offset)
+        value = self._cell.number()
+        if self._scale is PLAIN[0] and self._offset is PLAIN[1] and type(value) is Fraction:
+            return value  # most values are neither scaled nor moved
+        return Fraction(self._scale * value + self._offset)
 
     @property
     def is_open(self) -> bool:

@@ -110,19 +110,22 @@ class _Stated:
             return of_more_than_one([hows[self.names[n]] for n in some])
 
         # such a use would be found at the few places where another thing is the same as the definition: at x = y
-        otherwise = set[int]()
+        otherwise, anywhere = set[int](), False
         for calls in CALLS:
             if self.may_run and not enough(found):
-                found |= other_results.decided(statement, seed, calls, enough, otherwise)
+                more, anywhere = other_results.decided(statement, seed, calls, enough, otherwise)
+                found |= more
             if calls == CALLS[0] and not enough(found):
                 left = [n for n in uses if n not in found | otherwise]
                 found |= self._by_solver(meant, left, further)
         for again in range(TRIES if self.may_run else 0):
-            if enough(found):
+            # where the goals decided a result nowhere, one further run is enough: it stays undecided
+            if enough(found) or (again and not anywhere):
                 break
-            found |= other_results.decided(
+            more, some = other_results.decided(
                 statement, f"{seed}, {again}", CALLS[-1], enough, otherwise
             )
+            found, anywhere = found | more, anywhere or some
         return {self.names[n] for n in found}
 
     def _places(self, number: int) -> dict[Place, z3.ExprRef]:

@@ -61,13 +61,15 @@ def decided(
     calls: int,
     enough_of: Callable[[set[int]], bool],
     otherwise: set[int] | None = None,
-) -> set[int]:
-    """The uses whose results the goals are found to decide at many values; enough_of: ends the search.
+) -> tuple[set[int], bool]:
+    """The uses whose results the goals are found to decide at many values, and whether they decide one anywhere.
 
-    calls: the most calls of functions. otherwise: gets the uses of which goals are false with the definition's value
-    in the kernel's place, at some place: what they say is another thing, even if not everywhere.
+    enough_of: ends the search; calls: the most calls of functions. otherwise: gets the uses of which goals are false
+    with the definition's value in the kernel's place, at some place: what they say is another thing, even if not
+    everywhere.
     """
     others = set[int]() if otherwise is None else otherwise
+    anywhere = False
     asked = {use: terms for use, (_, terms) in statement.uses.items()}
     values: dict[Place, set[Any]] = {place: set() for use in asked.values() for place in use}
     many: set[Place] = set()
@@ -82,6 +84,7 @@ def decided(
             others |= {use} if any(use in place.otherwise for place in places) else set()
             if how == NO:
                 continue
+            anywhere = True
             if how == BY_DEFINITION:
                 meant.add(use)
             here, beside = places[0].base.arguments, places[-1].base.arguments
@@ -95,10 +98,10 @@ def decided(
             if use in meant and asked[use].keys() <= many:
                 found.add(use)
                 if enough_of(found):
-                    return found
+                    return found, anywhere
         if len(found | others) == len(asked) or left[0] <= 0:
             break
-    return found
+    return found, anywhere
 
 
 def _least(found: Iterator[int]) -> int:

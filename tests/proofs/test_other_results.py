@@ -49,6 +49,10 @@ class _Uses(Claim):
 
 
 def _by_runs(state, meaning=None) -> bool:
+    return 0 in _found(state, meaning)[0]
+
+
+def _found(state, meaning=None) -> tuple[set[int], bool]:
     claim = _Uses()
     state(claim)
     places = {
@@ -60,7 +64,7 @@ def _by_runs(state, meaning=None) -> bool:
     }
     meaning = full_name(meaning or meant)
     statement = other_results.Statement(state, places, meaning, frozenset())
-    return 0 in other_results.decided(statement, "seed", 20_000, lambda found: 0 in found)
+    return other_results.decided(statement, "seed", 20_000, lambda found: 0 in found)
 
 
 def _by_the_solver(state, meaning=None) -> bool:
@@ -96,6 +100,21 @@ def test_what_a_goal_decides(goal, many):
 
     assert _by_runs(state) is many
     assert _by_the_solver(state) is many
+
+
+@pytest.mark.parametrize(
+    ("goal", "anywhere"),
+    [
+        (lambda c, said, wanted: c.same(said, said), False),
+        (lambda c, said, wanted: c.same(said, wanted), True),
+    ],
+)
+def test_it_is_told_whether_a_result_is_decided_anywhere(goal, anywhere):
+    def state(c: Claim) -> None:
+        x, n = c.real("x"), c.integer("n")
+        c.show(goal(c, c.use(decides, x, n), c.define(meant, x, n)))
+
+    assert _found(state) == ({0} if anywhere else set(), anywhere)
 
 
 def test_premises_before_a_goal_restrict_it_and_those_after_do_not():
