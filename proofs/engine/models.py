@@ -40,7 +40,11 @@ class Models:
 
 
 def _is_true(model: z3.ModelRef, condition: z3.BoolRef) -> bool:
-    return bool(z3.is_true(model.eval(condition, model_completion=True)))
+    try:
+        found = model.eval(condition, model_completion=True)
+    except z3.Z3Exception:  # the context was interrupted, and no question has been put to it since
+        return False
+    return bool(z3.is_true(found))
 
 
 def _is_short(value: object) -> bool:

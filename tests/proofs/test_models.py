@@ -62,3 +62,14 @@ def test_what_a_model_satisfies_is_not_asked(monkeypatch):
     lift._MODELS.keep(_model(x == 2, y == 3))
     monkeypatch.setattr(lift.z3, "Solver", None)
     assert lift._feasible([x < y, x + y == 5])
+
+
+def test_after_an_interrupt_no_model_answers():
+    kept = models.Models()
+    kept.keep(_model(x == 2, y == 3))
+    z3.main_ctx().interrupt()
+    assert not kept.satisfy([x * x + y > 6])
+    solver = z3.Solver()
+    solver.add(x * x + y > 6)
+    assert solver.check() == z3.sat  # a question ends the interruption
+    assert kept.satisfy([x * x + y > 6])
