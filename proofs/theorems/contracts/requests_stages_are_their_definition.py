@@ -13,5 +13,7 @@ def claim(c: Claim) -> None:
         c.same(c.use(stage_after, stage, what), c.define(requests.after, stage, what)), "the stage"
     )
     act, about, ticket = c.integer("act"), c.integer("about"), c.integer("ticket")
+    own = c.use(happening, act, ticket, ticket)
+    c.show(own == c.define(requests.means, act), "what an act is for its own request")
     mine = c.when(about == ticket, c.define(requests.means, act), 0)
     c.show(c.use(happening, act, about, ticket) == mine, "what an act is for a request")
