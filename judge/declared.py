@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from cratous.judge.fields import Node
+from cratous.spec.errors import BadInput
 
 KINDS = ("blocked", "expiring", "surprised", "ended")
 NAMES = tuple(kind.capitalize() for kind in KINDS)
@@ -43,6 +44,7 @@ SHORT = {
     "LinkLossState": "Mode", "TakeOffState": "Mode",
 }  # fmt: skip
 """The field of a message that says it in short."""
+OTHERS = ("UxasHeard", "TaskProgress")
 OF_HAND = ("Expiry", "Surprises")
 BLOCKED_NOTE = "blocked: "
 
@@ -72,19 +74,29 @@ def read_check(_log: Any, body: Node, _time_ms: int) -> None:
 
 
 def note_due(log: Any, kind: str, body: Node) -> None:
-    """Keep a message from which it follows whether a failure is due, in the order of the log."""
+    """Keep a message from which it follows whether a failure is due, in the order of the log.
+
+    Nothing else needs what it says: where a field is missing or malformed only this is unknown.
+    """
+    if kind not in SHORT and kind not in OTHERS:
+        return
+    vehicle = body["VehicleID"].whole
+    try:
+        log.due.setdefault(vehicle, []).append(_event(kind, body))
+    except BadInput as error:
+        log.unread.setdefault(vehicle, f"{error.item}: {error.what}")
+
+
+def _event(kind: str, body: Node) -> Event:
     if kind in SHORT:
         word = body[SHORT[kind]].text
     elif kind == "UxasHeard":
         word = str(body["Heard"].flag)
-    elif kind == "TaskProgress":
+    else:
         blocked = body["Phase"].text == "Failed" and body["Note"].text.startswith(BLOCKED_NOTE)
         word = "Blocked" if blocked else ""
-    else:
-        return
     data = body
     if kind != "FailureCheck":  # of a certificate two numbers are needed, of others none
         numbers = {name: body[name].whole for name in OF_HAND} if kind == "HandState" else {}
         data = Node(numbers, body.where, body.item)
-    event = Event(kind, body["Time"].whole, word, data)
-    log.due.setdefault(body["VehicleID"].whole, []).append(event)
+    return Event(kind, body["Time"].whole, word, data)

@@ -56,6 +56,11 @@ def rows(mission: Mission, log: Log) -> Iterator[Row]:
         events = log.due.get(vehicle, [])
         checks = [one for one in events if one.kind == "FailureCheck"]
         note = f"{len(checks)} checks"
+        if vehicle in log.unread:
+            yield Row(
+                "G4", subject, item, UNKNOWN, f"{log.unread[vehicle]}; {note}", None, len(checks)
+            )
+            continue
         faults = list(_faults(mission, asked, events, vehicle))
         if faults:
             at, note = min(faults)

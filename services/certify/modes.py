@@ -1,6 +1,7 @@
 """The modes of each vehicle's decision logic over time, read from `CognitionState` messages.
 
-Each message is put through the kernel `decide` again, with the mode before it and the conditions that it tells.
+Each message is put through the kernel `decide` again, with the mode before it and the conditions that it tells; not
+while a flight is read (`note`), since whoever watches one would add to the calls that it counts.
 """
 
 from __future__ import annotations
@@ -43,19 +44,17 @@ def note(modes: list[dict[str, Any]], body: dict[str, Any]) -> None:
     mode = _numbers()[name]
     before = next((one["code"] for one in reversed(modes) if one["vehicle"] == vehicle), NOMINAL)
     seen = Conditions(*(bool(body[name.capitalize()]) for name in Conditions._fields))
-    why = [text for name, text in WORDS.items() if getattr(seen, name)]
-    if body["Skipped"]:
-        why = [f"{body['Skipped']} {one}" if one == WORDS["skips"] else one for one in why]
-    agrees = bool(decide(before, seen) == mode)
     modes.append(
         {
             "vehicle": vehicle,
             "from_ms": int(body["Time"]),
             "code": mode,
+            "before": before,
+            "seen": seen,
+            "skipped": body["Skipped"],
             "mode": "".join(f" {c.lower()}" if c.isupper() else c for c in name).strip(),
             "way": WAYS[str(body["Resolution"])],
             "intruder": int(body["IntruderID"]),
-            "why": "; ".join(why if agrees else (*why, OTHERWISE)),
         }
     )
 
@@ -78,13 +77,23 @@ def spans(modes: list[dict[str, Any]], end_ms: int) -> list[dict[str, Any]]:
                 "mode": one["mode"],
                 "way": one["way"],
                 "intruder": one["intruder"],
-                "why": one["why"],
+                "why": _why(one),
                 "group": group,
                 "from_ms": one["from_ms"],
                 "to_ms": next(later, max(end_ms, one["from_ms"])),
             }
         )
     return sorted(found, key=lambda one: (one["vehicle"], one["from_ms"]))
+
+
+def _why(one: dict[str, Any]) -> str:
+    """The conditions that a message told, in words, and whether they make its mode."""
+    why = [text for name, text in WORDS.items() if getattr(one["seen"], name)]
+    if one["skipped"]:
+        why = [f"{one['skipped']} {text}" if text == WORDS["skips"] else text for text in why]
+    if decide(one["before"], one["seen"]) != one["code"]:
+        why.append(OTHERWISE)
+    return "; ".join(why)
 
 
 @cache

@@ -17,7 +17,7 @@ from cratous.spec.errors import BadInput
 def test_models_hold_every_type() -> None:
     counts = {s: len(model.load(s).structs) for s in model.SERIES}
     assert counts == {
-        "CRATOUS": 23,
+        "CRATOUS": 24,
         "CMASI": 60,
         "UXTASK": 29,
         "ROUTE": 14,
@@ -27,7 +27,7 @@ def test_models_hold_every_type() -> None:
         "PERCEIVE": 3,
         "DAIDALUS": 10,
     }
-    assert len(lmcp.types) == 197
+    assert len(lmcp.types) == 198
     for name in lmcp.types:
         obj = lmcp.new(name)
         assert lmcp.full_names(obj)[0] == name

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.core.authority.cognition import Conditions
+from cratous.services.certify.evidence import counted
 from cratous.services.certify.modes import OTHERWISE, note, spans
 from cratous.services.certify.picture import time_view
 
@@ -47,6 +48,14 @@ def test_a_mode_that_the_kernel_does_not_make_of_its_conditions_says_so() -> Non
     landed, left = told(said(0, "Landed", Landed=True), said(500, "Nominal"))
     assert OTHERWISE not in landed["why"]
     assert OTHERWISE in left["why"]  # who has landed stays there
+
+
+def test_who_reads_a_flight_while_calls_are_counted_adds_none() -> None:
+    modes: list[dict[str, Any]] = []
+    with counted() as calls:
+        note(modes, said(0, "Nominal", Traffic=True))
+    assert calls.data()["called"] == {}
+    assert OTHERWISE in spans(modes, 9000)[0]["why"]
 
 
 def test_the_time_line_draws_all_modes_but_the_nominal_one() -> None:

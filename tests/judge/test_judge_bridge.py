@@ -69,6 +69,24 @@ def test_stories_that_do_not_fit(tmp_path: Path, rows) -> None:
     assert authority(tmp_path, rows) == "violated"
 
 
+@pytest.mark.parametrize(
+    ("gate", "expected"), [({"Time": 500}, "holds"), ({}, "unknown"), ({"Time": "soon"}, "unknown")]
+)
+def test_what_is_due_is_unknown_where_a_message_lacks_its_time(
+    tmp_path: Path, gate: dict[str, object], expected: str
+) -> None:
+    well_clear = {"dthr_m": 150.0, "zthr_m": 30.0, "tthr_s": 15.0, "tcoa_s": 0.0}
+    daa = {"well_clear": well_clear, "on_failure": {"choice": "hold", "sites": []}}
+    scene = Scene(instances=[1], daa=daa).straight(1, (0, 0, 300), NORTH)
+    no = dict.fromkeys(("Stopped", "Flies", "Without", "OnGround"), False)
+    for at in range(0, 10_001, 500):
+        said = {"VehicleID": 1, "Time": at, "Since": 0, "Expiry": 0, "Surprised": True, **no}
+        scene.say(at, "FailureCheck", **said, Failure="NotDeclared", DueBy=-1)
+    body = {"VehicleID": 1, "Owner": "UxAS", "Epoch": 0, "Offered": False}
+    scene.say(500, "GateState", **body, **gate)
+    assert one(tmp_path, scene, "failures of vehicle 1 are declared when due") == expected
+
+
 def test_a_task_that_fails_ends_no_takeover(tmp_path: Path) -> None:
     scene = Scene(tasks=[task(1, "must_fly", (100, 0))]).straight(1, (0, 0, 300), NORTH)
     scene.commands(1, *TAKEN[:4])
