@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from cratous.core.schedule.rows import runs_forward
-
 SHOWN = 4
 """Positions of a moving zone on a map."""
 
@@ -19,7 +17,8 @@ def positions(regions: list[dict[str, Any]], end_ms: int) -> list[tuple[dict[str
     for zone in {region["id"]: region for region in regions}.values():
         moving = zone["moving"]
         until_ms = end_ms if moving["until_ms"] is None else min(end_ms, moving["until_ms"])
-        for k in range(SHOWN) if runs_forward(moving["from_ms"], until_ms) else ():
+        in_force = range(moving["from_ms"], until_ms + 1)  # empty: from after the end of the flight
+        for k in range(SHOWN) if in_force else ():
             gone_s = (until_ms - moving["from_ms"]) * k / (SHOWN - 1) / 1000
             north, east = (gone_s * v for v in moving["velocity_m_s"])
             vertices = [(n + north, e + east) for n, e in moving["vertices"]]

@@ -144,7 +144,7 @@ def monitor(
         from cratous.services.logs.log import read_meta
         from cratous.services.logs.source import DOUBTS, doubts
 
-        standing = gate.standing(lambda: imported(("icarous.band_choices",)))
+        standing = gate.standing(lambda: imported(("monitor",)))
         wait.at("judging the messages of the log")
         doubted = [DOUBTS[one] for one in doubts(log)]
         with counted() as calls:

@@ -153,6 +153,8 @@ def test_the_map_shows_where_it_is() -> None:
     assert [(zone["vertices"][0][0], at_s) for zone, at_s in found] == [
         (0.0, 10.0), (20.0, 20.0), (40.0, 30.0), (60.0, 40.0),
     ]  # fmt: skip
+    assert len(positions([region], 10_000)) == 4
+    assert positions([region], 9_999) == [], "it moves after the end of the flight"
 
 
 # -- kernels against the judge's own code ---------------------------------------------------------
