@@ -3,8 +3,8 @@
 Candidates are turns that keep clear over the whole look-ahead, up to 60 degrees off the course, or up to 90
 where that is over much sooner. Such a turn is flown until the way back is free at one of the instants
 checked: permanently (permitted to its end against everybody, no zone across it) if possible, else for the
-look-ahead. If there is none, a way in time to the waypoint is searched (`timed_way`), and without one the
-manoeuvre of least deviation is flown (`core.avoidance.resolution`). Where
+look-ahead. If there is none, a way in time to the waypoint is searched (`timed_way`), flown while there is a
+certificate for it; without one the manoeuvre of least deviation is flown (`core.avoidance.resolution`). Where
 the mission prefers changes of altitude or speed, these are tried before turns, starting with the bands'
 resolutions. Where nothing keeps well clear, the recovery bands are tried first. This module only proposes:
 control goes back only on a way that is free when it is flown.
@@ -22,6 +22,7 @@ from cratous.core.avoidance.manoeuvre import Motion, fly_to
 from cratous.core.avoidance.prediction import after, later
 from cratous.core.avoidance.resolution import (
     Choice,
+    Scene,
     first_conflict_s,
     keeps_clear,
     of_kind,
@@ -30,6 +31,7 @@ from cratous.core.avoidance.resolution import (
 )
 from cratous.services.icarous.foresight import points_back, scene_of, way_back_is_free
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.offers import Refused, certified
 from cratous.services.icarous.return_to_path import PERSIST_MS, bearing_rad, goal_index
 from cratous.services.icarous.route_end import cylinder
 from cratous.services.icarous.state import Config, Search, State
@@ -75,7 +77,7 @@ def manoeuvre(
     if held is not None and timed is not None:
         # on another route, or with none as without the link, it leads to a place of the past
         same = timed.route == state.told.waypoints
-        follows = followed(timed, scene, config.daa, sensed) if same else None
+        follows = _permitted(timed, scene, config, sensed) if same else None
         if follows is not None:
             return replace(state, held=follows), follows
         held = None
@@ -92,7 +94,7 @@ def manoeuvre(
             search = Search(now_ms, now_ms + math.ceil(1000 * at_s) + waits_ms, found.lasting)
             return replace(state, held=found.choice, search=search), found.choice
         timed = _in_time(config, state, sensed)
-        follows = None if timed is None else followed(timed, scene, config.daa, sensed)
+        follows = None if timed is None else _permitted(timed, scene, config, sensed)
         if follows is not None:
             return replace(state, held=follows, timed=timed), follows
     choice = resolve(motion, sensed.ability, scene, course, speed, held)
@@ -162,6 +164,16 @@ def _in_time(config: Config, state: State, sensed: Sensed) -> Timed | None:
     points = points_back(state, sensed)
     found = proposed(scene_of(config, state, sensed), config.daa, sensed, points)
     return None if found is None else found._replace(route=state.told.waypoints)
+
+
+def _permitted(timed: Timed, scene: Scene, config: Config, sensed: Sensed) -> Choice | None:
+    """The velocity by which a way in time is followed now; None where it is not followed, or there is no certificate for
+    that velocity.
+    """
+    follows = followed(timed, scene, config.daa, sensed)
+    if follows is None or isinstance(certified(sensed, scene, follows, config.daa), Refused):
+        return None
+    return follows
 
 
 def _by_bands(config: Config, state: State, sensed: Sensed, level: Choice) -> tuple[Choice, ...]:

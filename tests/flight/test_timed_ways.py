@@ -12,10 +12,11 @@ from cratous.core.authority.gate import ICAROUS, Gate
 from cratous.core.avoidance.manoeuvre import Motion, smallest_turn
 from cratous.core.avoidance.prediction import Intruder, buffered, later
 from cratous.core.avoidance.resolution import Choice, Scene
-from cratous.services.icarous import cognition, link_loss, timed_way
+from cratous.services.icarous import cognition, link_loss, proposal, timed_way
 from cratous.services.icarous.decided import Decided
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.offers import Refused
 from cratous.services.icarous.permits import NONE
 from cratous.services.icarous.proposal import describe, manoeuvre
 from cratous.services.icarous.state import Config, Met, State
@@ -98,6 +99,21 @@ def test_it_is_given_up_where_it_is_not_permitted_any_more() -> None:
     anew = replace(state, held=None)
     again, _ = manoeuvre(CONFIG, anew, sensed(500, motion, ()), frozenset(), True)
     assert again.timed is None
+
+
+def test_it_is_flown_only_with_a_certificate(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither begun nor flown on without one: an aircraft that a way in time circles at the edge lets none be found."""
+    state, choice = manoeuvre(CONFIG, begun(), sensed(0, NORTH, CONVOY), frozenset(), False)
+    assert state.timed is not None
+    assert choice.kind == KIND
+    now = sensed(500, replace_place(state.timed.left(500)[0].position), CONVOY)
+    kept, choice = manoeuvre(CONFIG, state, now, frozenset(), False)
+    assert (kept.timed, choice.kind) == (state.timed, KIND)
+    monkeypatch.setattr(proposal, "certified", lambda *_: Refused(21, "not permitted"))
+    for before in (state, begun()):
+        after, choice = manoeuvre(CONFIG, before, now, frozenset(), False)
+        assert after.timed is None
+        assert choice.kind != KIND
 
 
 def test_on_another_route_or_without_the_link_another_is_flown() -> None:

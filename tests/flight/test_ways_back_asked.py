@@ -56,6 +56,8 @@ def flown(root: Path, kind: type[Mission]) -> Flown:
     with pytest.MonkeyPatch.context() as patched:
         # what a search finds here is free without asking: this is of flights in which it finds nothing
         patched.setattr(proposal, "_soonest", lambda *_: None)
+        # nor is a way in time, by which it is handed back as soon without asking
+        patched.setattr(proposal, "proposed", lambda *_: None)
         result = fly(mission, make_plan(mission), bus)
     assert (result.outcome, result.takeovers) == ("complete", 1)
 
