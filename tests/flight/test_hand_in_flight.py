@@ -263,13 +263,13 @@ def test_a_log_with_a_handback_with_nothing_in_hand_fits_the_model(
     def later(self: VehicleNode, state: Any, message: Any) -> Any:
         return keep(self, state, message) if message.now_ms > 100_000 else (state, ())
 
-    slow = Traffic(92, Position(2600.0, 0.0, 300.0), Velocity(9.0, 0.0, 0.0))
-    simulation = replace(meeting().simulation, limit_ms=292_000)
-    mission = replace(meeting(), traffic=(*meeting().traffic, slow), simulation=simulation)
+    comes = Traffic(92, Position(5000.0, 0.0, 300.0), Velocity(-9.0, 0.0, 0.0), appears_ms=150_000)
+    simulation = replace(meeting().simulation, limit_ms=220_000)
+    mission = replace(meeting(), traffic=(*meeting().traffic, comes), simulation=simulation)
     monkeypatch.setattr(VehicleNode, "_offered", later)
     log = flown(mission)
     owners = [one.body.Owner.name for one in log if one.topic.endswith("AuthorityChange")]
-    assert owners == ["ICAROUS", "UxAS", "ICAROUS"]
+    assert owners == ["ICAROUS", "UxAS", "ICAROUS", "UxAS"]
     first = changes(log)[0]
     assert (first.Change.name, first.Base, first.ID) == ("Offered", 1, 2)
     assert replay(mission, True, log).finding is None
