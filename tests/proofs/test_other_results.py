@@ -64,7 +64,7 @@ def _found(state, meaning=None) -> tuple[set[int], bool]:
     }
     meaning = full_name(meaning or meant)
     statement = other_results.Statement(state, places, meaning, frozenset())
-    return other_results.decided(statement, "seed", 20_000, lambda found: 0 in found)[0]
+    return other_results.decided(statement, "seed", 20_000, lambda found: 0 in found)
 
 
 def _by_the_solver(state, meaning=None) -> bool:
