@@ -127,9 +127,7 @@ class Log:
     declared: dict[int, list[Declared]] = field(default_factory=dict)
     hands: dict[int, list[tuple[int, str]]] = field(default_factory=dict)
     due: dict[int, list[Event]] = field(default_factory=dict)
-    unread: dict[int, str] = field(
-        default_factory=dict
-    )  # first message that lacks what `due` needs
+    unread: dict[int, str] = field(default_factory=dict)  # what lacks a field that `due` needs
     leaving: dict[int, list[Leaves]] = field(default_factory=dict)
     ends: list[tuple[int, str]] = field(default_factory=list)
     planned: frozenset[int] = frozenset()
