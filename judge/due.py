@@ -197,6 +197,8 @@ def _doubts(
     beat_ms = mission.heartbeat_ms
     seen = [one.time_ms for one in log.states.get(vehicle, [])] or [0, log.end_ms]
     last_ms = min(seen[-1], log.end_ms)
+    if seen[0] > beat_ms:
+        yield f"it was not observed before {seconds(seen[0])}"
     over = [one for one in events if one.kind == "FailureState" or one.word in LAST]
     times = [seen[0] - beat_ms, *(one.time_ms for one in checks)]
     if over:
@@ -205,6 +207,8 @@ def _doubts(
         closing = after == last_ms and before == times[-1]
         if after - before > beat_ms or (over and closing and after != before):
             yield f"no check for failures between {seconds(before)} and {seconds(after)}"
+    if not over and log.end_ms - last_ms > beat_ms:
+        yield f"it was not observed after {seconds(last_ms)}"
     if over or any(one.data["Stopped"].flag for one in checks):
         return
     heard = [one.word for one in events if one.kind == "UxasHeard"]

@@ -243,7 +243,7 @@ def recovery_point(
     It is strictly inside, or outside, and no point of the boundary is nearer to it than distance_m
     (kernels `locate` and `boundary_against`); the point itself if that is true of it. How near it is
     is computed on doubles: it is a nearest one but for rounding, about a billionth of the largest
-    coordinate. None: no point inside is that far from the boundary, or by no more than that.
+    coordinate. None: no point inside is that far from the boundary, or only by less than that rounding.
 
     >>> square = polygon([(0, 0), (10, 0), (10, 10), (0, 10)])
     >>> [round(value, 6) for value in recovery_point((1, 5), square, 3, inside=True)]

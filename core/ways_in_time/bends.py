@@ -17,8 +17,6 @@ CHORD_RAD = math.radians(15)
 """Greatest angle of an arc that one chord stands for."""
 SHARPEST_RAD = math.radians(150)
 """A sharper corner than this is flown by no arc."""
-LAP_CHORDS = 24
-"""Number of chords of a lap."""
 
 
 class Stand(NamedTuple):

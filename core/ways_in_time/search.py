@@ -177,12 +177,12 @@ class Search:
             state = state.before
             states.append(state)
         states.reverse()
-        pieces, rho_m, off_m = list[Piece](), 0.0, 0.0
+        pieces, rho_m = list[Piece](), 0.0
         for a, b in itertools.pairwise(states):
             made = self.grid.stretch(a.leg, b.leg, a.speed_m_s, b.speed_m_s, b.side)
             assert made is not None
             pieces += made.begun(a.at_s)
-            rho_m, off_m = max(rho_m, made.rho_m), max(off_m, made.off_m)
+            rho_m = max(rho_m, made.rho_m)
         way = tuple(pieces)
         again = Checks(self.grid.checks.scene)
         zones = all(again.keeps_zones(p.position, after(p, p.duration_s), 0.0) for p in way)

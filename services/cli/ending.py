@@ -12,7 +12,7 @@ def end(code: int) -> None:
     """End this process with an exit code, as the interpreter would, except for the objects that are still there.
 
     Threads that are not daemons are waited for, exit handlers run (temporary folders, children), and the standard
-    streams are flushed. Raises SystemExit instead if one of these fails, which the interpreter reports, and under a
+    streams are flushed. Raises SystemExit instead if a stream cannot be flushed, which the interpreter reports, and under a
     profiler or tracer, which writes its findings afterwards.
     """
     if sys.getprofile() is not None or sys.gettrace() is not None:

@@ -102,11 +102,13 @@ def _planned(mission: Mission, allow_unproved: bool) -> tuple[Plan, int]:
     from cratous.services.cli.job import new_bus, plan_and_check
     from cratous.services.cli.plan_lines import left_out_lines
     from cratous.services.cli.progress import waiting
+    from cratous.services.monitor.moving_plan import check_in_time
 
     with waiting("holding the code against its proofs", False):
         standing = ledger.require(allow_unproved=allow_unproved)
     with waiting("planning", False):
         plan, checks = plan_and_check(mission, new_bus())
+        checks += check_in_time(mission, plan)
     for check in checks:
         if exit_code([check.outcome]):
             say(

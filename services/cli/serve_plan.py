@@ -61,6 +61,7 @@ def _plan(asked: Asked, tell: Tell) -> None:
     )
     from cratous.services.logs.records import to_data
     from cratous.services.mission.windows import windows
+    from cratous.services.monitor.moving_plan import check_in_time
     from cratous.spec.mission.guarantees import exit_code
 
     standing = ledger.require(allow_unproved=first["allow_unproved"])
@@ -71,6 +72,7 @@ def _plan(asked: Asked, tell: Tell) -> None:
 
     bus.tap(planning_told(at, len(mission.tasks)))
     made, checks = plan_and_check(mission, bus)
+    checks += check_in_time(mission, made)
     outcomes = [check.outcome for check in checks]
     tell(
         {

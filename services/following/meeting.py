@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 DOUBLINGS = 16
 """What is moving is not met if this many doublings of the flight time do not suffice."""
-SECANTS, HALVINGS = 12, 40
+SECANTS, HALVINGS = 12, 60
 """After this many steps by the secant the bracket is halved, so often at most."""
 NARROW = 1e-9
 """The bracket is as narrow as this at the end, in the unit of its argument."""
@@ -21,7 +21,7 @@ class Look(NamedTuple):
 
 
 def first_met(look: Callable[[float], Look], guess: float) -> float | None:
-    """An argument from 0 on at which a vehicle is no longer short of its goal, less than `NARROW` after one at which
+    """An argument from 0 on at which a vehicle is no longer short of its goal, at most `NARROW` after one at which
     it is, unless it is short at none; None if it is still short after `DOUBLINGS` doublings of a guess, >= 0.
 
     Where what is looked at grows and falls, so that there are several such arguments, it is any one of them.

@@ -93,7 +93,7 @@ def manoeuvre(
             waits_ms = patience(state.cycle.relapses, PERSIST_MS) + 2 * config.heartbeat_ms
             search = Search(now_ms, now_ms + math.ceil(1000 * at_s) + waits_ms, found.lasting)
             return replace(state, held=found.choice, search=search), found.choice
-        timed = _in_time(config, state, sensed)
+        timed = _in_time(config, state, sensed, scene)
         follows = None if timed is None else _permitted(timed, scene, config, sensed)
         if follows is not None:
             return replace(state, held=follows, timed=timed), follows
@@ -157,12 +157,12 @@ def _soonest(
     return wide if wide is not None and wide.lasting else found
 
 
-def _in_time(config: Config, state: State, sensed: Sensed) -> Timed | None:
+def _in_time(config: Config, state: State, sensed: Sensed, scene: Scene) -> Timed | None:
     """A way in time onto the path of UxAS; None without a path, or if none is found."""
     if not state.told.waypoints:
         return None
     points = points_back(state, sensed)
-    found = proposed(scene_of(config, state, sensed), config.daa, sensed, points)
+    found = proposed(scene, config.daa, sensed, points)
     return None if found is None else found._replace(route=state.told.waypoints)
 
 

@@ -29,8 +29,8 @@ TRACKING_S = 1.0
 """Tracking error on a circle: less than the distance flown in this time [s]."""
 FARTHER = (2.0, 4.0, 6.0)
 """How far past the end a hold is looked for where none is permitted beside it [turn radii]."""
-ZONE_M = 5.0
-"""Least distance of that way from zones [m]."""
+STEP_S = 5.0
+"""That way is checked against zones in steps of this [s], without a margin."""
 WIDEST = 1.5
 """Where a zone blocks the circle, its radius is up to this many times larger."""
 
@@ -152,7 +152,7 @@ def _hold_farther(
         on = level if reaches(0.0, left_s) else level._replace(duration_s=on_s)
         if any(meets((on,), other, volume) for other in scene.intruders for volume in volumes):
             return None
-        if first_zone_s((on,), scene.zones, ZONE_M) is not None:
+        if first_zone_s((on,), scene.zones, STEP_S) is not None:
             return None
         if reaches(0.0, left_s):
             return on, ()

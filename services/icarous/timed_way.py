@@ -61,7 +61,7 @@ def room_m(daa: Daa, sensed: Sensed) -> float:
 
 
 def scene_in_time(scene: Manoeuvres, daa: Daa, sensed: Sensed) -> Scene:
-    """What a way is checked against: zones, with the own deviation and uncertainty as the margin; the buffered
+    """What a way is checked against: zones, with the own uncertainty and the deviation sideways as the margin; the buffered
     cylinder and the mission's own volume of each intruder.
     """
     here = scene.here

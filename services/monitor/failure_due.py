@@ -20,6 +20,7 @@ from cratous.core.kernel import qualified
 from cratous.services.assumptions.authority import has_it, reported
 from cratous.services.mission.landing import on_failure_of
 from cratous.services.mission.take_off import grounded
+from cratous.services.monitor.failure import BLOCKED_NOTE, RESERVE_BEATS
 from cratous.services.monitor.required_rows import failure_due_item
 from cratous.services.monitor.told_certificates import Certificates
 from cratous.spec.authority.failure import NONE
@@ -29,10 +30,7 @@ from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission.on_failure import Failed
 
-RESERVE_BEATS = 4
-"""Number of heartbeats that a certificate must cover; a test compares it with the instance's value."""
 FAILED = "failed"
-BLOCKED_NOTE = "blocked: "
 OLD = "the log tells no checks for failures"
 
 
@@ -154,6 +152,8 @@ class FailureDueWatch:
         before_ms = told.checked_ms
         if told.checks == 1:
             first_ms = told.seen_ms[0] if told.seen_ms else 0
+            if not in_time(0, first_ms, self._beat_ms):
+                told.doubts.append(f"it was not observed before {first_ms / 1000:.2f} s")
             before_ms = first_ms - self._beat_ms
         if not lasted(now_ms, before_ms + self._beat_ms, 0):
             told.doubts.append(_unchecked(before_ms, now_ms))
@@ -186,6 +186,8 @@ class FailureDueWatch:
                 continue
             told.hand.passed(told.checked_ms, told.wrong)
             last_ms = min(told.seen_ms[1] if told.seen_ms else body.Time, body.Time)
+            if not in_time(last_ms, body.Time, self._beat_ms):
+                told.doubts.append(f"it was not observed after {last_ms / 1000:.2f} s")
             if told.checks and lasted(told.checked_ms + self._beat_ms, last_ms, 1):
                 told.doubts.append(_unchecked(told.checked_ms, last_ms))
             told.doubts.extend(self._not_told(told, body.Outcome == FAILED))

@@ -1,7 +1,8 @@
 """A plan against moving zones, at the times that it plans: a vehicle is taken to fly each way at a uniform speed.
 
 The flight does not follow these rows: it is planned anew as a zone moves on. A way is checked leg by leg, a wait as a disc
-that stands, against where the zone is then (kernels as for flown legs).
+that stands, against where the zone is then (legs by the kernels for flown legs, circles by leg_keeps). After its last
+task a vehicle is taken to stay until the others are done.
 """
 
 from __future__ import annotations
@@ -25,12 +26,13 @@ from cratous.spec.mission.plan import Plan, PlanItem
 
 def check_in_time(mission: Mission, plan: Plan) -> list[Verdict]:
     """One verdict for each moving zone and planned vehicle: unknown where the plan, as it is, would meet the zone."""
-    found = []
+    found, last_ms = [], max((item.end_ms for item in plan.items), default=0)
     for zone in moving_zones(mission):
         for vehicle in mission.vehicles:
             chain = plan.chain(vehicle.id)
             if chain:
-                found.append(_verdict(zone, vehicle.id, ways_of(vehicle.position, chain)))
+                ways = ways_of(vehicle.position, chain)
+                found.append(_verdict(zone, vehicle.id, ways, last_ms))
     return found
 
 
@@ -40,7 +42,9 @@ def meeting_lines(mission: Mission, plan: Plan) -> list[str]:
     return [f"{c.item}: {c.note}" for c in checks if c.outcome is not Outcome.HOLDS]
 
 
-def _verdict(zone: MovingZone, vehicle: int, ways: list[tuple[PlanItem, Path, Path]]) -> Verdict:
+def _verdict(
+    zone: MovingZone, vehicle: int, ways: list[tuple[PlanItem, Path, Path]], last_ms: int
+) -> Verdict:
     checks, met_ms, free_ms = 0, None, 0
     for item, transit, path in ways:
         parts = [
@@ -49,6 +53,8 @@ def _verdict(zone: MovingZone, vehicle: int, ways: list[tuple[PlanItem, Path, Pa
             *_wait(item, path[0]),
             *_legs(path, item.start_ms, item.end_ms),
         ]
+        if item is ways[-1][0]:
+            parts += _stay(path[-1], item.end_ms, last_ms)
         free_ms = item.end_ms
         for leg, times_ms, radius_m in parts:
             over = zone.until_ms is not None and runs_forward(zone.until_ms, times_ms[0])
@@ -76,7 +82,7 @@ def _verdict(zone: MovingZone, vehicle: int, ways: list[tuple[PlanItem, Path, Pa
         time_ms=met_ms,
         vehicles=(vehicle,),
         checks=checks,
-        method="leg_ok, in the frame of the zone",
+        method="leg_ok, for waits leg_keeps, in the frame of the zone",
         kernels=moving_deciding(zone),
     )
 

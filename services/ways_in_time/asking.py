@@ -35,7 +35,9 @@ from cratous.spec.mission import Position
 BUDGET_S = 0.5
 """Time for one search [s]."""
 CHECKS_PER_S = 50_000
-"""Checks that a slow core makes in a second; so many times the budget are made at most."""
+"""Checks that a slow core makes in a second. A search ends at the first state after the budget's; laying out the grid and
+the last check of the whole way are not cut short.
+"""
 STATES = 60_000
 """Greatest number of states in memory; each takes less than a kilobyte."""
 BINS = 60

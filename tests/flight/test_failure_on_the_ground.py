@@ -15,7 +15,12 @@ from cratous.services.flight.lost_link import after_failure
 from cratous.services.loading import load
 from cratous.spec.mission.guarantees import Outcome
 
-ROWS = ("what vehicle 1 does after a failure", "authority over vehicle 1", "take-off of vehicle 1")
+ROWS = (
+    "what vehicle 1 does after a failure",
+    "authority over vehicle 1",
+    "take-off of vehicle 1",
+    "failures of vehicle 1 are declared when due",
+)
 OVER_IT = [{"at_s": 72, "zone": {"id": 9, "kind": "keep_out", "vertices": [[2400, -100], [2600, -100], [2600, 100], [2400, 100]]}}]  # fmt: skip
 SITES = [{"name": "base", "position": {"north_m": 60, "east_m": 0}, "radius_m": 220}, {"name": "field", "position": {"north_m": 900, "east_m": 0}, "radius_m": 60}]  # fmt: skip
 HOVERS = {"id": 90, "position": {"north_m": 600, "east_m": 20, "alt_m": 120}, "velocity": {"north_m_s": 0, "east_m_s": 0}}  # fmt: skip

@@ -29,7 +29,7 @@ FAILS, ALONE, AUTHORITY = (
     "what vehicle 1 flies without the link",
     "authority over vehicle 1",
 )
-ROWS = (FAILS, ALONE, AUTHORITY)
+ROWS = (FAILS, ALONE, AUTHORITY, "failures of vehicle 1 are declared when due")
 BESIDE = {"id": 90, "position": {"north_m": 480, "east_m": 20, "alt_m": 300}, "velocity": {"north_m_s": 20, "east_m_s": 1}, "appears_s": 25, "vanishes_s": 85}  # fmt: skip
 FAR = [{"id": 1, "kind": "must_fly", "points": [{"north_m": 3000, "east_m": 0, "alt_m": 300}]}]
 FINISH = {"choice": "finish", "after_s": 3}

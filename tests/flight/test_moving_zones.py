@@ -27,7 +27,7 @@ from cratous.services.cli.job import Settings, new_bus, plan_and_check, run_miss
 from cratous.services.exporting.exported import exported
 from cratous.services.flight.encounter import ways_of
 from cratous.services.loading import load
-from cratous.services.mission.moving_zones import exact_moving_leg_ok, moving_zones
+from cratous.services.mission.moving_zones import Now, exact_moving_leg_ok, moving_zones
 from cratous.services.mission.zone_times import judged_zones, zones_of
 from cratous.services.monitor.moving_plan import check_in_time
 from cratous.services.processes.coverage import told_of
@@ -276,3 +276,14 @@ def test_a_plan_that_meets_it_later_is_not_said_to_hold(tmp_path: Path) -> None:
     # at 25 m/s against 8 m/s from 250 m away
     assert row.time_ms is not None
     assert row.time_ms / 1000 == pytest.approx(150 + 250 / 33, abs=2)
+
+
+def test_a_leg_keeps_clear_of_a_zone_that_comes_for_as_long_as_it_is_flown() -> None:
+    ring = ((0.0, -50.0), (100.0, -50.0), (100.0, 50.0), (0.0, 50.0))
+    moving = MovingZone(7, ring, 0.0, 200.0, (-20.0, 0.0))
+    leg = Position(-200.0, 0.0, 100.0), Position(-3.0, 0.0, 100.0)
+    near = Position(-10.0, 0.0, 100.0), Position(-5.0, 0.0, 100.0)
+    far = Position(-150.0, 0.0, 100.0), Position(-145.0, 0.0, 100.0)
+    assert Now(moving, 0, 0).kept_by(leg, near, 1.0)  # 4 m away
+    assert not Now(moving, 0, 250).kept_by(leg, near, 1.0)  # and it comes 5 m nearer
+    assert Now(moving, 0, 250).kept_by(leg, far, 1.0)

@@ -13,6 +13,7 @@ from flight_logs import both_of, gate, log_of, message, mission_of, says
 from ground_tools import Flown, flown_of
 
 from cratous.bridge import lmcp
+from cratous.judge import due, failures
 from cratous.services.icarous import failing
 from cratous.services.loading import load
 from cratous.services.monitor import failure_due
@@ -148,6 +149,22 @@ def test_a_failure_is_declared_when_due(
 ) -> None:
     said = sorted(said, key=lambda one: one.time_ms)
     assert verdicts(mission, tmp_path, said) == (expected, expected)
+
+
+@pytest.mark.parametrize(
+    ("first_ms", "last_ms", "expected"),
+    [(0, END_MS, GOOD), (0, 5000, OPEN), (5000, END_MS, OPEN)],
+)
+def test_what_was_not_observed_from_beginning_to_end_is_unknown(
+    mission: Mission, first_ms: int, last_ms: int, expected: str, tmp_path: Path
+) -> None:
+    """Neither positions nor checks beyond an instant: nothing contradicts anything, and nothing is known."""
+    unseen = [range(first_ms), range(last_ms + 1, END_MS + 1)]
+    gap = max(unseen, key=len)
+    said = under_uxas(-(-first_ms // BEAT_MS) * BEAT_MS, last_ms)
+    paths = {1: lambda now_ms: (0.02 * now_ms, 0.0, 300.0)}
+    log = log_of(paths, *said, end_ms=END_MS, outcome="complete", gap=gap)
+    assert both_of(mission, log, ROW, tmp_path) == (expected, expected)
 
 
 BETWEEN = [*under_uxas(0, 2000), gate("ICAROUS", 2250), check(2500, Flies=True)]
@@ -293,4 +310,4 @@ def test_the_log_of_a_flight_cannot_be_edited(surprised: Flown, tmp_path: Path) 
 
 
 def test_all_have_the_same_reserve() -> None:
-    assert failing.RESERVE_BEATS == failure_due.RESERVE_BEATS
+    assert failing.RESERVE_BEATS == failure_due.RESERVE_BEATS == due.RESERVE == failures.RESERVE

@@ -12,6 +12,7 @@ from flight_logs import both_of, log_of, mission_of
 from cratous.services.monitor.moving_plan import check_in_time
 from cratous.services.pipeline.plan import make_plan
 from cratous.spec.mission import Mission
+from cratous.spec.mission.plan import Hold
 from cratous.spec.records import replace
 
 ROW = "zone: keep_out 9, flight of vehicle 1"
@@ -99,12 +100,20 @@ def test_what_a_plan_does_between_its_ways_is_checked_too(root: Path, tmp_path: 
 
     assert said() == GOOD
     # on the spot, or straight up, for a while
-    assert said(start_ms=250_000, end_ms=250_000) == "unknown"
+    # the path itself is after the zone's end: the wait alone meets it
+    assert said(start_ms=320_000, end_ms=320_000) == "unknown"
+    # so does the rim of a circle, the centre of which is beside the zone
+    circle = Hold(at.north_m, at.east_m + 120.0, at.alt_m, 100.0, True)
+    assert said(hold=circle, start_ms=320_000, end_ms=320_000) == "unknown"
     assert said(path=(at, at), end_ms=250_000) == "unknown"
     assert said(path=(at, at._replace(alt_m=400.0)), end_ms=250_000) == "unknown"
     assert said(path=(at, at), end_ms=199_000) == GOOD
+    # after its last task, while another vehicle still has one
+    other = replace(item, vehicle_id=2, end_ms=250_000)
+    made = replace(plan, items=(item, other))
+    assert [check.outcome.value for check in check_in_time(mission, made)] == ["unknown"]
     # before it departs, over the place where it starts
     there = replace(mission, vehicles=(replace(mission.vehicles[0], position=at),))
-    late = {"depart_ms": 250_000, "arrive_ms": 350_000, "start_ms": 350_000, "end_ms": 350_000}
+    late = {"depart_ms": 320_000, "arrive_ms": 350_000, "start_ms": 350_000, "end_ms": 350_000}
     made = replace(plan, items=(replace(item, transit=(), **late),))
     assert [check.outcome.value for check in check_in_time(there, made)] == ["unknown"]
